@@ -1,1 +1,16 @@
-//! Placeholder crate root.
+//! Gamepads as plain [`GamepadState`]s: from devices, from recordings and from written scripts.
+//!
+//! ```
+//! let script = gamepad::Script::from_ron(
+//!     "(entries: [(at: 1.0, ramp: 2.0, left_stick: (0.0, 1.0)), (at: 4.0, tap: [East])])",
+//! )?;
+//! assert_eq!(script.state_at(0.5).left_stick, [0.0, 0.0]);
+//! assert_eq!(script.state_at(2.0).left_stick, [0.0, 0.5]);
+//! assert!(script.state_at(4.05).buttons.contains(gamepad::Button::East));
+//! # Ok::<(), gamepad::ScriptError>(())
+//! ```
+
+mod script;
+
+pub use policy_core::{Button, Buttons, GamepadState};
+pub use script::{MAX_SCRIPT_BYTES, MAX_SCRIPT_ENTRIES, MAX_SCRIPT_SECS, Script, ScriptError, TAP_SECS};

@@ -1,0 +1,71 @@
+//! What can be wrong with a script.
+
+use std::path::PathBuf;
+
+use super::{MAX_SCRIPT_BYTES, MAX_SCRIPT_ENTRIES, MAX_SCRIPT_SECS};
+
+/// Why a script was refused.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum ScriptError {
+    /// The text is no script: broken RON, an unknown field or button, or a value out of its range.
+    #[error("line {line}, column {column}: {reason} (in `{excerpt}`)")]
+    Malformed {
+        /// Line at which reading stopped, from 1.
+        line: usize,
+        /// Column at which reading stopped, from 1.
+        column: usize,
+        /// What was expected and what was found.
+        reason: Box<ron::error::Error>,
+        /// That line, cut short.
+        excerpt: String,
+    },
+    /// The text is too long to be a script.
+    #[error("expected at most {MAX_SCRIPT_BYTES} bytes, found {found}")]
+    TooLong {
+        /// Length found, in bytes; for a file at least this many.
+        found: usize,
+    },
+    /// The file is not UTF-8.
+    #[error("expected UTF-8 text, found another byte at offset {offset}")]
+    NotUtf8 {
+        /// First byte that is not UTF-8.
+        offset: usize,
+    },
+    /// The file can't be read.
+    #[error("cannot be read: {0}")]
+    Unreadable(#[from] std::io::Error),
+    /// Any of the others, in a named file.
+    #[error("{}: {source}", file.display())]
+    InFile {
+        /// The script's file.
+        file: PathBuf,
+        /// What is wrong in it.
+        source: Box<ScriptError>,
+    },
+}
+
+/// A value that RON can read but a script can't have; shown inside [`ScriptError::Malformed`].
+#[derive(Debug, thiserror::Error)]
+pub(super) enum Defect {
+    #[error("time: expected seconds in [0, {MAX_SCRIPT_SECS}], found {0}")]
+    Time(f64),
+    #[error("stick: expected each axis in [-1, 1], found {0}")]
+    Axis(f32),
+    #[error("trigger: expected a pull in [0, 1], found {0}")]
+    Pull(f32),
+    #[error(
+        "entry {entry}: `at`: expected a time after {previous} (entries are in order of time), found {found}"
+    )]
+    Order { entry: usize, previous: f64, found: f64 },
+    #[error("`entries`: expected at most {MAX_SCRIPT_ENTRIES} entries, found more")]
+    TooManyEntries,
+    #[error("buttons: expected each button at most once in a list, found `{0:?}` again")]
+    Twice(crate::Button),
+    #[error(
+        "entry {entry}: `{button:?}`: expected it in one of `press`, `release` and `tap`, found it in two"
+    )]
+    Contradiction { entry: usize, button: crate::Button },
+    #[error("`duration`: expected at least {end}, the end of the last ramp or tap, found {found}")]
+    Duration { end: f64, found: f64 },
+}
