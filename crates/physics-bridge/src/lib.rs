@@ -1,1 +1,35 @@
-//! Placeholder crate root.
+//! The humanoid of policy-core in MuJoCo: sense, actuate, step, save and restore.
+//!
+//! A [`Model`] is immutable and shared by any number of characters; a [`Character`] is the mutable state of
+//! one body. SI units, world space, z up. MuJoCo writes quaternions wxyz and glam xyzw: the change is made
+//! in this crate and nowhere else.
+//!
+//! MuJoCo's messages go to a handler that is installed when the first model is loaded, so nothing is
+//! printed and no file is written into the working folder. A program that also uses mujoco-rs by itself
+//! loads its first [`Model`] before it starts threads.
+
+mod character;
+mod diverged;
+mod layout;
+mod logging;
+mod mjcf;
+mod model;
+mod model_error;
+mod pose;
+
+pub use character::Character;
+pub use diverged::{Diverged, Warning};
+pub use model::Model;
+pub use model_error::ModelError;
+pub use pose::{BodyPoses, Pose, PoseError};
+
+/// Control ticks per second.
+pub const CONTROL_HZ: u32 = 30;
+
+/// Numbers in `qpos`: position (3) and rotation (4, wxyz) of the pelvis, then the 28 hinges in the order of
+/// [`policy_core::JOINT_NAMES`].
+pub const QPOS_LEN: usize = 7 + policy_core::DOF_COUNT;
+
+/// Numbers in `qvel`: linear velocity of the pelvis in world axes (3), its angular velocity in its own axes
+/// (3), then the 28 hinges in the order of [`policy_core::JOINT_NAMES`].
+pub const QVEL_LEN: usize = 6 + policy_core::DOF_COUNT;

@@ -1,0 +1,113 @@
+//! Why a model can't be loaded.
+
+use std::path::PathBuf;
+
+use crate::CONTROL_HZ;
+
+/// Why a [`Model`](crate::Model) can't be made of an MJCF.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum ModelError {
+    /// The file can't be read.
+    #[error("cannot read the MJCF file {}", path.display())]
+    Read {
+        /// The file.
+        path: PathBuf,
+        /// What the system says.
+        source: std::io::Error,
+    },
+    /// The file was read and refused.
+    #[error("{}: {source}", path.display())]
+    File {
+        /// The file.
+        path: PathBuf,
+        /// What is wrong in it.
+        source: Box<ModelError>,
+    },
+    /// The bytes are not text.
+    #[error("expected MJCF as UTF-8 text, found an invalid byte at offset {offset}")]
+    Utf8 {
+        /// Bytes before it that are valid.
+        offset: usize,
+    },
+    /// The XML is malformed, or no valid MJCF.
+    #[error("expected a valid MJCF, found: {message}")]
+    Mjcf {
+        /// MuJoCo's words, on one line, with the element and the line in the XML.
+        message: String,
+    },
+    /// A named part of the humanoid does not exist.
+    #[error("expected a {kind} named {name}, found none")]
+    Missing {
+        /// `body`, `joint`, `actuator` or `geom`.
+        kind: &'static str,
+        /// Its name.
+        name: &'static str,
+    },
+    /// A named part exists and is something else.
+    #[error("expected {expected} for {kind} {name}, found something else")]
+    Kind {
+        /// `joint`, `actuator` or `geom`.
+        kind: &'static str,
+        /// Its name.
+        name: &'static str,
+        /// What it should be.
+        expected: &'static str,
+    },
+    /// More or fewer degrees of freedom than the humanoid's.
+    #[error("expected {expected} {what}, found {found}")]
+    Count {
+        /// What is counted.
+        what: &'static str,
+        /// The humanoid's number.
+        expected: usize,
+        /// The model's number.
+        found: i64,
+    },
+    /// The pelvis does not float.
+    #[error("expected the pelvis to hang on the world by a free joint, found another joint or none")]
+    FixedPelvis,
+    /// The time step does not divide a control tick.
+    #[error("expected a timestep that divides 1/{CONTROL_HZ} s, found {timestep_secs} s")]
+    Timestep {
+        /// The option in the MJCF, seconds.
+        timestep_secs: f64,
+    },
+    /// An integrator that can't be stepped in two halves.
+    #[error("expected the integrator Euler, implicit or implicitfast, found RK4")]
+    Integrator,
+    /// Too little or too much working memory for each character.
+    #[error("expected a size memory between {least} and {most} bytes, found {found}")]
+    Memory {
+        /// Least, bytes.
+        least: i64,
+        /// Most, bytes.
+        most: i64,
+        /// In the MJCF, bytes.
+        found: i64,
+    },
+    /// A number of a [`Terrain`](crate::Terrain) is out of its range.
+    #[error("expected {field} of the terrain between {least} and {most}, found {found}")]
+    Terrain {
+        /// Field of the terrain.
+        field: &'static str,
+        /// Least.
+        least: f32,
+        /// Most.
+        most: f32,
+        /// Given.
+        found: f32,
+    },
+    /// A number of [`Settings`](crate::Settings) is out of its range.
+    #[error("expected the setting {field} between {least} and {most}, found {found}")]
+    Setting {
+        /// Field of the settings.
+        field: &'static str,
+        /// Least.
+        least: f32,
+        /// Most.
+        most: f32,
+        /// Given.
+        found: f32,
+    },
+}

@@ -1,0 +1,104 @@
+//! The physics, the observation and the discriminator features against the golden walk.
+
+use std::sync::Arc;
+
+use integration_tests::HUMANOID_MJCF;
+use integration_tests::golden::{GoldenTick, golden_walk, largest_difference};
+use mujoco_rs::wrappers::mj_data::MjData;
+use mujoco_rs::wrappers::mj_model::MjModel;
+use physics_bridge::{Character, Model};
+use policy_core::{
+    ActionScaling, CharacterState, FRAME_LEN, JOINT_NAMES, JointTargets, OBSERVATION_LEN,
+    discriminator_frame_into, observe_into,
+};
+
+const TOLERANCE: f32 = 1e-5;
+
+fn pose(character: &mut Character, tick: &GoldenTick) {
+    let qpos = tick.qpos.as_slice().try_into().unwrap();
+    let qvel = tick.qvel.as_slice().try_into().unwrap();
+    character.set_pose(qpos, qvel).unwrap();
+}
+
+fn targets(tick: &GoldenTick) -> JointTargets {
+    let mut targets = JointTargets::default();
+    for (to, &from) in targets.0.iter_mut().zip(&tick.ctrl) {
+        *to = from as f32;
+    }
+    targets
+}
+
+#[test]
+fn the_recording_is_in_our_order() {
+    let golden = golden_walk();
+    assert_eq!(golden.actuators, JOINT_NAMES);
+    assert_eq!(golden.joints_in_qpos_order, JOINT_NAMES);
+    assert_eq!(golden.bodies, policy_core::BODY_NAMES);
+    assert_eq!(golden.ticks.len(), 60);
+}
+
+#[test]
+fn every_tick_is_sensed_as_recorded() {
+    let model = Model::from_mjcf(HUMANOID_MJCF).unwrap();
+    let mut character = Character::new(&model);
+    let mut state = CharacterState::default();
+    let (mut observation, mut frame) = ([0.0; OBSERVATION_LEN], [0.0; FRAME_LEN]);
+    for (index, tick) in golden_walk().ticks.iter().enumerate() {
+        pose(&mut character, tick);
+        character.sense_into(&mut state);
+        observe_into(&state, &mut observation);
+        discriminator_frame_into(&state, &mut frame);
+        let (at, difference) = largest_difference(&observation, &tick.observation);
+        assert!(difference <= TOLERANCE, "tick {index}: observation[{at}] differs by {difference}");
+        let (at, difference) = largest_difference(&frame, &tick.discriminator_frame);
+        assert!(difference <= TOLERANCE, "tick {index}: discriminator_frame[{at}] differs by {difference}");
+    }
+}
+
+#[test]
+fn every_action_becomes_the_recorded_targets() {
+    let (low, high) = Model::from_mjcf(HUMANOID_MJCF).unwrap().joint_limits();
+    let scaling = ActionScaling::from_joint_limits(low, high).unwrap();
+    let mut found = JointTargets::default();
+    for (index, tick) in golden_walk().ticks.iter().enumerate() {
+        scaling.targets_into(tick.action.as_slice().try_into().unwrap(), &mut found);
+        let (at, difference) = largest_difference(&found.0, &targets(tick).0);
+        assert!(difference <= TOLERANCE, "tick {index}: ctrl[{at}] differs by {difference}");
+    }
+}
+
+/// MuJoCo itself, fed the recorded joint targets in double precision, follows the recording bit for bit:
+/// the character in `assets/` is the one that was recorded.
+#[test]
+fn bare_mujoco_repeats_the_recording_bit_for_bit() {
+    let model = Arc::new(MjModel::from_xml_string(HUMANOID_MJCF).unwrap());
+    let golden = golden_walk();
+    let mut data = MjData::new(Arc::clone(&model));
+    data.qpos_mut().copy_from_slice(&golden.ticks[0].qpos);
+    data.qvel_mut().copy_from_slice(&golden.ticks[0].qvel);
+    for (index, tick) in golden.ticks.iter().enumerate() {
+        assert_eq!(data.qpos(), tick.qpos, "qpos of tick {index}");
+        assert_eq!(data.qvel(), tick.qvel, "qvel of tick {index}");
+        data.ctrl_mut().copy_from_slice(&tick.ctrl);
+        for _ in 0..4 {
+            data.step();
+        }
+    }
+}
+
+/// A character gets its joint targets in single precision, so it leaves the recording by their rounding,
+/// which contacts magnify.
+#[test]
+fn the_recorded_targets_reproduce_the_recorded_motion() {
+    let model = Model::from_mjcf(HUMANOID_MJCF).unwrap();
+    let golden = golden_walk();
+    let mut character = Character::new(&model);
+    pose(&mut character, &golden.ticks[0]);
+    for (index, tick) in golden.ticks.iter().enumerate() {
+        let found = character.pose();
+        let largest = found.qpos.iter().zip(&tick.qpos).map(|(a, b)| (a - b).abs()).fold(0.0_f64, f64::max);
+        assert!(largest <= TOLERANCE.into(), "tick {index}: qpos differs by {largest}");
+        character.actuate(&targets(tick));
+        character.step().unwrap();
+    }
+}
