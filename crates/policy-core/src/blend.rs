@@ -1,0 +1,201 @@
+//! Interpolated policies: for every layer, the mixing factor of each policy.
+//!
+//! Interpolating parameters is linear in the parameters, so a layer of the interpolated network is the
+//! weighted sum of the policies' layers: the blend is evaluated without being built (paper, section 3.3;
+//! per layer, section 4.3).
+
+use crate::kernel::{Arithmetic, add_scaled_rows, relu, scale_rows};
+use crate::mlp::{MAX_LAYERS, Mlp, MlpScratch};
+
+/// Most policies in one [`Blend`].
+pub const MAX_BLEND_TERMS: usize = 8;
+
+/// One policy's part in a blend.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct BlendTerm {
+    /// Index of the policy among those the blend is evaluated with.
+    pub policy: usize,
+    /// Blend weight in each layer, first to last; layers the policy lacks are ignored. Usually in [0, 1] with
+    /// a sum of 1 over the terms, but any finite number extrapolates. A weight of 0 costs nothing.
+    pub weights: [f32; MAX_LAYERS],
+}
+
+/// Blend weights of up to [`MAX_BLEND_TERMS`] policies.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Blend {
+    terms: [BlendTerm; MAX_BLEND_TERMS],
+    len: usize,
+}
+
+impl PartialEq for Blend {
+    fn eq(&self, other: &Self) -> bool {
+        self.terms() == other.terms()
+    }
+}
+
+/// A [`Blend`] has no room for another policy.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("expected at most {MAX_BLEND_TERMS} policies in a blend")]
+pub struct BlendFull;
+
+impl Blend {
+    /// One policy alone.
+    #[must_use]
+    pub fn single(policy: usize) -> Self {
+        let mut blend = Self::default();
+        blend.terms[0] = BlendTerm { policy, weights: [1.0; MAX_LAYERS] };
+        blend.len = 1;
+        blend
+    }
+
+    /// `t` of the way from one policy to another in all layers: the paper's main mode.
+    #[must_use]
+    pub fn between(from: usize, to: usize, t: f32) -> Self {
+        Self::between_per_layer(from, to, [t; MAX_LAYERS])
+    }
+
+    /// A way from one policy to another that differs from layer to layer: the paper's section 4.3.
+    #[must_use]
+    pub fn between_per_layer(from: usize, to: usize, t: [f32; MAX_LAYERS]) -> Self {
+        if from == to || t == [0.0; MAX_LAYERS] {
+            return Self::single(from);
+        }
+        if t == [1.0; MAX_LAYERS] {
+            return Self::single(to);
+        }
+        let mut blend = Self::default();
+        blend.terms[0] = BlendTerm { policy: from, weights: t.map(|t| 1.0 - t) };
+        blend.terms[1] = BlendTerm { policy: to, weights: t };
+        blend.len = 2;
+        blend
+    }
+
+    /// Adds a policy.
+    ///
+    /// # Errors
+    /// When the blend is full.
+    pub fn push(&mut self, term: BlendTerm) -> Result<(), BlendFull> {
+        let slot = self.terms.get_mut(self.len).ok_or(BlendFull)?;
+        *slot = term;
+        self.len += 1;
+        Ok(())
+    }
+
+    /// The policies and their blend weights.
+    #[must_use]
+    pub fn terms(&self) -> &[BlendTerm] {
+        &self.terms[..self.len]
+    }
+
+    /// The policy, if the blend is one policy alone with weight 1.
+    #[must_use]
+    pub fn as_single(&self) -> Option<usize> {
+        match self.terms() {
+            [term] if term.weights == [1.0; MAX_LAYERS] => Some(term.policy),
+            _ => None,
+        }
+    }
+
+    /// The term with the greatest blend weight over all layers; `None` when the blend is empty.
+    #[must_use]
+    pub fn strongest(&self) -> Option<usize> {
+        let total = |t: &BlendTerm| t.weights.iter().sum::<f32>();
+        let best = self.terms().iter().max_by(|a, b| total(a).total_cmp(&total(b)));
+        best.map(|term| term.policy)
+    }
+
+    /// Terms with a weight other than 0 in `layer`.
+    pub(crate) fn active(&self, layer: usize) -> impl Iterator<Item = (usize, f32)> + '_ {
+        self.terms().iter().map(move |t| (t.policy, t.weights[layer])).filter(|(_, w)| *w != 0.0)
+    }
+
+    /// Writes the outputs of the interpolated network to `out`, without building it: one product for each
+    /// policy. Does not allocate. A blend of one policy gives that policy's outputs bit for bit.
+    ///
+    /// # Panics
+    /// When the blend is empty or names a policy that is not there, when the shapes differ, or as
+    /// [`Mlp::evaluate_into`].
+    pub fn evaluate_into(
+        &self,
+        policies: &[Mlp],
+        arithmetic: Arithmetic,
+        input: &[f32],
+        scratch: &mut MlpScratch,
+        out: &mut [f32],
+    ) {
+        let first = &policies[self.terms()[0].policy];
+        if let Some(policy) = self.as_single() {
+            return policies[policy].evaluate_into(arithmetic, input, scratch, out);
+        }
+        first.assert_lengths(input, out);
+        let MlpScratch { front, back } = scratch;
+        let mut x = input;
+        let last = first.layers().len() - 1;
+        for (i, shape) in first.layers().iter().enumerate() {
+            let y = &mut front[..shape.padded_outputs()];
+            y.fill(0.0);
+            for (policy, weight) in self.active(i) {
+                let layer = &policies[policy].layers()[i];
+                assert_eq!(layer.outputs(), shape.outputs(), "blended policies have one shape");
+                arithmetic.layer_add(x, &layer.weight, &layer.bias, weight, y.as_chunks_mut().0);
+            }
+            if i < last {
+                relu(y);
+            }
+            core::mem::swap(front, back);
+            x = &back[..shape.outputs()];
+        }
+        out.copy_from_slice(x);
+    }
+
+    /// Writes the parameters of the interpolated network to `out`: worth it when the blend rests for some
+    /// ticks. Does not allocate.
+    ///
+    /// # Panics
+    /// When the blend is empty or names a policy that is not there, or when the shapes differ.
+    pub fn parameters_into(&self, policies: &[Mlp], out: &mut Mlp) {
+        assert!(policies[self.terms()[0].policy].same_shape(out), "blended policies have one shape");
+        for (i, layer) in out.layers_mut().iter_mut().enumerate() {
+            let mut first = true;
+            for (policy, weight) in self.active(i) {
+                let source = &policies[policy].layers()[i];
+                let write = if first { scale_rows } else { add_scaled_rows };
+                write(weight, &source.weight, &mut layer.weight);
+                write(weight, &source.bias, &mut layer.bias);
+                first = false;
+            }
+            if first {
+                scale_rows(0.0, &policies[self.terms()[0].policy].layers()[i].weight, &mut layer.weight);
+                scale_rows(0.0, &policies[self.terms()[0].policy].layers()[i].bias, &mut layer.bias);
+            }
+        }
+    }
+
+    /// Evaluates every policy of the blend and sums their outputs, each with its weight in the last
+    /// layer: blending of actions, to compare. Does not allocate.
+    ///
+    /// # Panics
+    /// As [`Blend::evaluate_into`].
+    pub fn evaluate_actions_into(
+        &self,
+        policies: &[Mlp],
+        arithmetic: Arithmetic,
+        input: &[f32],
+        scratch: &mut MlpScratch,
+        out: &mut [f32],
+    ) {
+        let last = policies[self.terms()[0].policy].layers().len() - 1;
+        if let Some(policy) = self.as_single() {
+            return policies[policy].evaluate_into(arithmetic, input, scratch, out);
+        }
+        let mut action = [0.0; 64];
+        let action = &mut action[..out.len()];
+        out.fill(0.0);
+        for (policy, weight) in self.active(last) {
+            policies[policy].evaluate_into(arithmetic, input, scratch, action);
+            for (sum, a) in out.iter_mut().zip(&*action) {
+                *sum += weight * a;
+            }
+        }
+    }
+}
