@@ -1,1 +1,156 @@
-fn main() {}
+//! `cargo xtask`: set-up, demo, checks and benchmarks of Policy Space, one verb each.
+//!
+//! Depends on nothing that links libmujoco, because it has to run before libmujoco is there.
+
+mod bench;
+mod checks;
+mod demo;
+mod fuzz;
+mod setup;
+mod workspace;
+
+use std::ffi::OsString;
+use std::process::ExitCode;
+
+use anyhow::Result;
+use clap::{Args, Parser, Subcommand};
+
+use crate::setup::Purpose;
+use crate::workspace::{Workspace, run};
+
+/// Set-up, demo, checks and benchmarks of Policy Space.
+///
+/// Two verbs are enough for most: `cargo xtask demo` and `cargo xtask test`. Each makes the machine ready first.
+#[derive(Debug, Parser)]
+#[command(name = "cargo xtask", bin_name = "cargo xtask", arg_required_else_help = true)]
+struct Cli {
+    #[command(subcommand)]
+    verb: Verb,
+}
+
+/// What can be asked for.
+#[derive(Debug, Subcommand)]
+enum Verb {
+    /// Fetch libmujoco and install the system packages that are missing.
+    ///
+    /// libmujoco 3.17.0 comes from its Python wheel, pinned by hash, and lands in third_party/mujoco.
+    /// POLICY_SPACE_MUJOCO_WHEEL=FILE takes a wheel that is already on this machine; MUJOCO_DYNAMIC_LINK_DIR=DIR
+    /// takes a libmujoco that is. Running it again costs nothing.
+    Setup(SetupArgs),
+    /// Set up, then run the demo.
+    #[command(after_help = demo::HELP, disable_help_flag = true)]
+    Demo(DemoArgs),
+    /// Set up, then run every check that CI runs, and say which of them failed.
+    Test(TestArgs),
+    /// Check who may import whom.
+    Imports,
+    /// Run cargo-deny: licences, banned crates and sources.
+    Deny {
+        /// Install cargo-deny first when it is missing; takes some minutes.
+        #[arg(long)]
+        install: bool,
+    },
+    /// Measure, and print a table or one JSON object.
+    Bench(bench::BenchArgs),
+    /// Feed random bytes to the parsers; needs a nightly toolchain and cargo-fuzz.
+    Fuzz(fuzz::FuzzArgs),
+    /// Ask the gamepad crate about connected pads: `cargo xtask pad doctor`.
+    Pad {
+        /// What to ask; `doctor` lists devices and shows what they report.
+        #[arg(trailing_var_arg = true, allow_hyphen_values = true, default_value = "doctor")]
+        arguments: Vec<OsString>,
+    },
+}
+
+/// What can be said about the set-up.
+#[derive(Debug, Args)]
+struct SetupArgs {
+    /// Only say which system packages are missing.
+    #[arg(long)]
+    no_install: bool,
+}
+
+/// What can be said about the demo.
+#[derive(Debug, Args)]
+struct DemoArgs {
+    /// Handed on to the demo, but for --no-install.
+    #[arg(trailing_var_arg = true, allow_hyphen_values = true, value_name = "ARGUMENT")]
+    arguments: Vec<OsString>,
+}
+
+/// What can be said about the checks.
+#[derive(Debug, Args)]
+struct TestArgs {
+    /// Only say which system packages are missing.
+    #[arg(long)]
+    no_install: bool,
+    /// Count a check that cannot run here (no cross target, no cargo-deny) as failed.
+    #[arg(long)]
+    strict: bool,
+    /// Install cargo-deny when it is missing.
+    #[arg(long)]
+    deny: bool,
+}
+
+fn main() -> ExitCode {
+    match dispatch(Cli::parse().verb) {
+        Ok(code) => code,
+        Err(error) => {
+            eprintln!("xtask: error: {error:#}");
+            ExitCode::FAILURE
+        }
+    }
+}
+
+fn dispatch(verb: Verb) -> Result<ExitCode> {
+    let workspace = Workspace::find()?;
+    match verb {
+        Verb::Setup(arguments) => {
+            setup::prepare(&workspace, Purpose::Tests, !arguments.no_install)?;
+            eprintln!("xtask: the set-up is complete");
+        }
+        Verb::Demo(arguments) => return demo::run(&workspace, arguments.arguments),
+        Verb::Test(arguments) => {
+            setup::prepare(&workspace, Purpose::Tests, !arguments.no_install)?;
+            let options = checks::Options { strict: arguments.strict, install_deny: arguments.deny };
+            return Ok(checks::run(&workspace, options));
+        }
+        Verb::Imports => checks::imports::check(&workspace)?,
+        Verb::Deny { install } => checks::deny::check(&workspace, install)?,
+        Verb::Bench(arguments) => bench::run(&workspace, &arguments)?,
+        Verb::Fuzz(arguments) => fuzz::run(&workspace, &arguments)?,
+        Verb::Pad { arguments } => {
+            run(workspace
+                .cargo()
+                .args(["run", "--quiet", "-p", "gamepad", "--bin", "pad", "--"])
+                .args(arguments))?;
+        }
+    }
+    Ok(ExitCode::SUCCESS)
+}
+
+#[cfg(test)]
+mod tests {
+    use clap::CommandFactory;
+
+    use super::*;
+
+    #[test]
+    fn the_command_line_is_well_formed() {
+        Cli::command().debug_assert();
+    }
+
+    #[test]
+    fn arguments_of_the_demo_go_through() {
+        let cli = Cli::parse_from(["xtask", "demo", "--headless", "--seconds", "3"]);
+        let Verb::Demo(arguments) = cli.verb else { panic!("not the demo") };
+        assert_eq!(arguments.arguments, ["--headless", "--seconds", "3"]);
+    }
+
+    #[test]
+    fn help_of_the_demo_is_handled_by_the_demo() {
+        let cli = Cli::parse_from(["xtask", "demo", "--help"]);
+        let Verb::Demo(arguments) = cli.verb else { panic!("not the demo") };
+        assert_eq!(arguments.arguments, ["--help"]);
+    }
+}

@@ -1,0 +1,137 @@
+//! `bench policy`: policy-core's own benchmarks, then the peers', in one run on one machine.
+//!
+//! The contract with `crates/policy-core/benches/policy.rs`: benchmarks or groups of one named `evaluate`,
+//! `fused`, `cached`, `batched` and `tick`; `batched` says by its throughput how many characters (elements) one
+//! iteration evaluates. The peers are the group `peers` of `benches/peers`, one benchmark each.
+
+use std::path::Path;
+use std::process::{Command, Stdio};
+
+use anyhow::{Context, Result};
+use serde_json::{Map, Value, json};
+
+use super::estimates::{Estimate, read, read_group};
+use crate::setup;
+use crate::workspace::{Workspace, run};
+
+/// Measures and collects the figures.
+///
+/// # Errors
+/// When a benchmark cannot be built or run, or a figure is missing.
+pub fn measure(workspace: &Workspace, with_peers: bool) -> Result<Map<String, Value>> {
+    // A folder of its own, emptied first: no figure of an earlier run can be taken for one of this run.
+    let home = workspace.target().join("bench-policy");
+    if home.exists() {
+        std::fs::remove_dir_all(&home).with_context(|| format!("remove {}", home.display()))?;
+    }
+    if with_peers {
+        build_peers(workspace)?;
+    }
+    let own = ["bench", "-p", "policy-core", "--bench", "policy"];
+    run(quiet(workspace.cargo().args(own).env("CRITERION_HOME", &home)))?;
+    if with_peers {
+        let library = setup::onnx_runtime(workspace)?;
+        let mut peers = peers(workspace, &["bench"]);
+        run(quiet(peers.env("CRITERION_HOME", &home).env("ORT_DYLIB_PATH", library)))?;
+    }
+    figures(&home)
+}
+
+/// Builds the peers ahead of all measuring, so that both halves are measured one right after the other.
+fn build_peers(workspace: &Workspace) -> Result<()> {
+    eprintln!("xtask: building the peers; the first time this takes many minutes");
+    run(quiet(&mut peers(workspace, &["bench", "--no-run"])))
+}
+
+fn peers(workspace: &Workspace, arguments: &[&str]) -> Command {
+    let mut command = workspace.cargo();
+    command
+        .args(arguments)
+        .args(["--manifest-path", "benches/peers/Cargo.toml"])
+        .env("CARGO_TARGET_DIR", workspace.target().join("peers"));
+    command
+}
+
+/// Sends what a command writes to stdout to stderr.
+fn quiet(command: &mut Command) -> &mut Command {
+    command.stdin(Stdio::null()).stdout(Stdio::from(std::io::stderr()))
+}
+
+/// The figures of everything that was measured below criterion's folder.
+fn figures(home: &Path) -> Result<Map<String, Value>> {
+    let mut figures = Map::new();
+    for name in ["evaluate", "fused", "cached"] {
+        figures.insert(format!("{name}_ns"), rounded(read(home, name)?.median_ns));
+    }
+    let batched = read(home, "batched")?;
+    figures.insert("batched_ns_per_character".to_owned(), rounded(per_element(batched)?));
+    figures.insert("tick_ns".to_owned(), rounded(read(home, "tick")?.median_ns));
+    let peers = read_group(home, "peers")?.into_iter();
+    let peers: Map<String, Value> =
+        peers.map(|(name, estimate)| (name, rounded(estimate.median_ns))).collect();
+    figures.insert("peers_ns".to_owned(), Value::Object(peers));
+    Ok(figures)
+}
+
+fn per_element(estimate: Estimate) -> Result<f64> {
+    let elements = estimate
+        .elements
+        .filter(|count| *count > 0)
+        .context("`batched` must set Throughput::Elements to its number of characters")?;
+    Ok(estimate.median_ns / elements as f64)
+}
+
+/// Tenths of a nanosecond: more digits than a clock has.
+fn rounded(nanoseconds: f64) -> Value {
+    json!((nanoseconds * 10.0).round() / 10.0)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::bench::estimates::pretend;
+    use crate::workspace::ScratchFolder;
+
+    fn measured(name: &str) -> ScratchFolder {
+        let home = ScratchFolder::new(name);
+        for (benchmark, median) in
+            [("evaluate", 776.04), ("fused", 1911.0), ("cached", 790.0), ("tick", 2600.0)]
+        {
+            pretend(home.path(), benchmark, median, None);
+        }
+        pretend(home.path(), "batched/256", 256.0 * 300.0, Some(256));
+        home
+    }
+
+    #[test]
+    fn every_figure_is_there_under_its_agreed_name() {
+        let home = measured("policy-figures");
+        pretend(home.path(), "peers/tract", 4973.0, None);
+        pretend(home.path(), "peers/onnxruntime", 3477.0, None);
+        let expected = json!({
+            "evaluate_ns": 776.0,
+            "fused_ns": 1911.0,
+            "cached_ns": 790.0,
+            "batched_ns_per_character": 300.0,
+            "tick_ns": 2600.0,
+            "peers_ns": { "onnxruntime": 3477.0, "tract": 4973.0 },
+        });
+        assert_eq!(Value::Object(figures(home.path()).unwrap()), expected);
+    }
+
+    #[test]
+    fn without_peers_their_object_is_empty() {
+        let home = measured("policy-no-peers");
+        assert_eq!(figures(home.path()).unwrap()["peers_ns"], json!({}));
+    }
+
+    #[test]
+    fn a_batch_of_unknown_size_or_a_missing_figure_is_an_error() {
+        let home = measured("policy-errors");
+        pretend(home.path(), "batched/256", 1000.0, None);
+        assert!(figures(home.path()).unwrap_err().to_string().contains("Throughput::Elements"));
+        pretend(home.path(), "batched/256", 1000.0, Some(256));
+        std::fs::remove_dir_all(home.path().join("cached")).unwrap();
+        assert!(figures(home.path()).unwrap_err().to_string().contains("`cached`"));
+    }
+}

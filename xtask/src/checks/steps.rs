@@ -1,0 +1,82 @@
+//! The checks themselves: which command each one is.
+
+use std::path::Path;
+use std::process::Command;
+
+use anyhow::Result;
+
+use super::{Options, Step, Verdict, deny, imports};
+use crate::workspace::{Workspace, answers, output_of, run};
+
+/// All checks in the order in which they run: quick ones first, the tests last, so that a run ends with theirs.
+pub const STEPS: &[Step] = &[
+    Step { name: "formatting", run: formatting },
+    Step {
+        name: "who imports whom",
+        run: |workspace, _| imports::check(workspace).map(|()| Verdict::Passed),
+    },
+    Step { name: "cargo-deny", run: |workspace, options| deny::step(workspace, options.install_deny) },
+    Step { name: "no_std: wasm32", run: |workspace, _| no_std(workspace, "wasm32-unknown-unknown") },
+    Step { name: "no_std: thumbv7em", run: |workspace, _| no_std(workspace, "thumbv7em-none-eabihf") },
+    Step { name: "clippy", run: clippy },
+    Step { name: "documentation", run: documentation },
+    Step { name: "tests", run: tests },
+];
+
+fn formatting(workspace: &Workspace, _: Options) -> Result<Verdict> {
+    if !has_component(workspace, "fmt", "rustfmt") {
+        return Ok(missing_component("rustfmt"));
+    }
+    run(workspace.cargo().args(["fmt", "--all", "--check"]))?;
+    Ok(Verdict::Passed)
+}
+
+fn clippy(workspace: &Workspace, _: Options) -> Result<Verdict> {
+    if !has_component(workspace, "clippy", "clippy") {
+        return Ok(missing_component("clippy"));
+    }
+    run(workspace.cargo().args(["clippy", "--workspace", "--all-targets", "--", "-D", "warnings"]))?;
+    Ok(Verdict::Passed)
+}
+
+fn documentation(workspace: &Workspace, _: Options) -> Result<Verdict> {
+    run(workspace.cargo().args(["doc", "--workspace", "--no-deps"]).env("RUSTDOCFLAGS", "-D warnings"))?;
+    Ok(Verdict::Passed)
+}
+
+fn tests(workspace: &Workspace, _: Options) -> Result<Verdict> {
+    run(workspace.cargo().args(["test", "--workspace", "--no-fail-fast"]))?;
+    Ok(Verdict::Passed)
+}
+
+/// Builds policy-core without the standard library for a target that has none.
+fn no_std(workspace: &Workspace, target: &str) -> Result<Verdict> {
+    if !has_target(workspace, target) && !run_rustup(&["target", "add", target]) {
+        return Ok(Verdict::Skipped(format!("target {target} is not installed and rustup could not add it")));
+    }
+    let arguments = ["build", "-p", "policy-core", "--no-default-features", "--target", target];
+    run(workspace.cargo().args(arguments))?;
+    Ok(Verdict::Passed)
+}
+
+/// Whether the compiler has the libraries of a target.
+fn has_target(workspace: &Workspace, target: &str) -> bool {
+    let rustc = std::env::var_os("RUSTC").unwrap_or_else(|| "rustc".into());
+    let folder = output_of(workspace.command(rustc).args(["--print", "target-libdir", "--target", target]));
+    folder.is_ok_and(|folder| Path::new(folder.trim()).is_dir())
+}
+
+/// Whether a cargo subcommand of the toolchain is there, after adding its component if it was not.
+fn has_component(workspace: &Workspace, subcommand: &str, component: &str) -> bool {
+    let there = || answers(workspace.cargo().args([subcommand, "--version"]));
+    there() || (run_rustup(&["component", "add", component]) && there())
+}
+
+fn missing_component(component: &str) -> Verdict {
+    Verdict::Skipped(format!("{component} is not installed and rustup could not add it"))
+}
+
+fn run_rustup(arguments: &[&str]) -> bool {
+    eprintln!("xtask: rustup {}", arguments.join(" "));
+    run(Command::new("rustup").args(arguments)).is_ok()
+}

@@ -1,0 +1,57 @@
+//! Makes a fresh machine ready: system packages and libmujoco. Quick and silent when all is there.
+//!
+//! The demo, the tests and the benchmarks run it by themselves. Tried on Debian 12 (x86_64); the paths for
+//! arm64, macOS and Windows are written and their wheels pinned, but have not been run.
+
+mod download;
+#[cfg(windows)]
+mod import_library;
+mod library;
+mod packages;
+mod pins;
+
+use std::path::{Path, PathBuf};
+
+use anyhow::{Context, Result};
+
+pub use packages::Purpose;
+
+use self::library::Installation;
+use crate::workspace::Workspace;
+
+/// Where cargo's environment says that libmujoco lies; `.cargo/config.toml` sets it to our own folder.
+const LINK_VARIABLE: &str = "MUJOCO_DYNAMIC_LINK_DIR";
+
+/// Installs or names missing packages and fetches libmujoco.
+///
+/// # Errors
+/// When libmujoco is not there and cannot be fetched.
+pub fn prepare(workspace: &Workspace, purpose: Purpose, install: bool) -> Result<()> {
+    packages::prepare(purpose, install);
+    if let Some(folder) = foreign_folder(workspace) {
+        eprintln!("xtask: using libmujoco from {} ({LINK_VARIABLE})", folder.display());
+        return Ok(());
+    }
+    Installation::new(&pins::MUJOCO, workspace.third_party())?.ensure().context("set-up of libmujoco")
+}
+
+/// Fetches ONNX Runtime, which only the benchmark of peers uses, and hands back its library file.
+///
+/// # Errors
+/// When it is not there and cannot be fetched.
+pub fn onnx_runtime(workspace: &Workspace) -> Result<PathBuf> {
+    let installation = Installation::new(&pins::ONNX_RUNTIME, workspace.third_party())?;
+    installation.ensure().context("set-up of ONNX Runtime")?;
+    Ok(installation.library_file())
+}
+
+/// The user's own folder of libmujoco, if the environment names one.
+fn foreign_folder(workspace: &Workspace) -> Option<PathBuf> {
+    let folder = PathBuf::from(std::env::var_os(LINK_VARIABLE)?);
+    let ours = workspace.third_party().join("mujoco/lib");
+    (!same_path(&folder, &ours)).then_some(folder)
+}
+
+fn same_path(one: &Path, other: &Path) -> bool {
+    one == other || matches!((one.canonicalize(), other.canonicalize()), (Ok(one), Ok(other)) if one == other)
+}
