@@ -5,6 +5,8 @@
 //! vector width changes; without fused multiply-add ([`Arithmetic::Reproducible`]) the bits are the same
 //! on every machine.
 
+#![expect(clippy::needless_range_loop, reason = "index loops over fixed arrays are what vectorises")]
+
 use multiversion::multiversion;
 use multiversion::target::target_cfg_f;
 

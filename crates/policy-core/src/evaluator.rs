@@ -1,0 +1,123 @@
+//! One character's evaluation of its blend: the three blend modes, and the cache of a blend that rests.
+
+use crate::blend::Blend;
+use crate::kernel::Arithmetic;
+use crate::mlp::{Mlp, MlpScratch};
+
+/// Ticks a blend rests before its parameters are kept: building them costs about four evaluations.
+const RESTING_TICKS: u32 = 4;
+
+/// How a blend of policies becomes one action.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+pub enum BlendMode {
+    /// Interpolate the parameters: the paper's method.
+    #[default]
+    Parameters,
+    /// Evaluate every policy and interpolate their actions.
+    Actions,
+    /// The policy with the greatest blend weight alone.
+    Switch,
+}
+
+impl BlendMode {
+    /// All modes, in the order of the paper's comparison.
+    pub const ALL: [BlendMode; 3] = [BlendMode::Parameters, BlendMode::Actions, BlendMode::Switch];
+
+    /// Name for command lines and files.
+    #[must_use]
+    pub const fn name(self) -> &'static str {
+        match self {
+            BlendMode::Parameters => "parameters",
+            BlendMode::Actions => "actions",
+            BlendMode::Switch => "switch",
+        }
+    }
+
+    /// The mode called `name`.
+    #[must_use]
+    pub fn from_name(name: &str) -> Option<Self> {
+        Self::ALL.into_iter().find(|mode| mode.name() == name)
+    }
+}
+
+/// What an evaluation took.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+pub enum Evaluation {
+    /// One policy.
+    #[default]
+    Single,
+    /// Interpolated parameters, kept from an earlier tick: one product.
+    Cached,
+    /// Interpolated parameters without building them: one product for each policy.
+    Fused,
+    /// Every policy, actions interpolated.
+    Actions,
+}
+
+/// Room and cache for the evaluations of one character.
+#[derive(Clone, Debug)]
+pub struct BlendEvaluator {
+    arithmetic: Arithmetic,
+    scratch: MlpScratch,
+    cache: Option<Mlp>,
+    last: Blend,
+    rested: u32,
+}
+
+impl BlendEvaluator {
+    /// An evaluator for policies of one shape. With `keep` it holds the parameters of a resting blend, as
+    /// large as one policy; a crowd that shares its caches may be faster without.
+    #[must_use]
+    pub fn new(shape: &Mlp, arithmetic: Arithmetic, keep: bool) -> Self {
+        Self {
+            arithmetic,
+            scratch: MlpScratch::for_mlp(shape),
+            cache: keep.then(|| shape.clone()),
+            last: Blend::default(),
+            rested: 0,
+        }
+    }
+
+    /// Writes the action of a blend to `out`. Does not allocate. Fused and cached evaluation agree to
+    /// rounding.
+    ///
+    /// # Panics
+    /// As [`Blend::evaluate_into`].
+    pub fn evaluate_into(
+        &mut self,
+        policies: &[Mlp],
+        blend: &Blend,
+        mode: BlendMode,
+        input: &[f32],
+        out: &mut [f32],
+    ) -> Evaluation {
+        let single = match mode {
+            BlendMode::Switch => blend.strongest(),
+            BlendMode::Parameters | BlendMode::Actions => blend.as_single(),
+        };
+        if let Some(policy) = single {
+            policies[policy].evaluate_into(self.arithmetic, input, &mut self.scratch, out);
+            return Evaluation::Single;
+        }
+        if mode == BlendMode::Actions {
+            blend.evaluate_actions_into(policies, self.arithmetic, input, &mut self.scratch, out);
+            return Evaluation::Actions;
+        }
+        let rests = self.last == *blend;
+        self.rested = if rests { self.rested.saturating_add(1) } else { 0 };
+        self.last = *blend;
+        match &mut self.cache {
+            Some(cache) if self.rested >= RESTING_TICKS => {
+                if self.rested == RESTING_TICKS {
+                    blend.parameters_into(policies, cache);
+                }
+                cache.evaluate_into(self.arithmetic, input, &mut self.scratch, out);
+                Evaluation::Cached
+            }
+            _ => {
+                blend.evaluate_into(policies, self.arithmetic, input, &mut self.scratch, out);
+                Evaluation::Fused
+            }
+        }
+    }
+}

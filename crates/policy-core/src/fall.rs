@@ -1,0 +1,34 @@
+//! Fall detection: a pelvis that stays lower than the policies in use allow.
+
+use crate::graph::{GraphPosition, PolicyGraph};
+
+/// Seconds the pelvis must stay low.
+const FALL_SECONDS: f32 = 0.3;
+
+/// Watches one character.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(crate) struct FallDetector {
+    low_seconds: f32,
+}
+
+/// Pelvis height below which a character at this place on the graph has fallen; `None` where low is right.
+pub(crate) fn fall_height(graph: &PolicyGraph, position: GraphPosition) -> Option<f32> {
+    let height = |node: usize| graph.nodes()[node].fall_height;
+    match position.as_node() {
+        Some(node) => height(node),
+        None => Some(height(position.from)?.min(height(position.to)?)),
+    }
+}
+
+impl FallDetector {
+    pub(crate) fn reset(&mut self) {
+        self.low_seconds = 0.0;
+    }
+
+    /// Takes the pelvis' height above the ground; true while the character has fallen.
+    pub(crate) fn tick(&mut self, limit: Option<f32>, pelvis_height: f32, dt_secs: f32) -> bool {
+        let low = limit.is_some_and(|limit| pelvis_height < limit);
+        self.low_seconds = if low { self.low_seconds + dt_secs } else { 0.0 };
+        self.low_seconds >= FALL_SECONDS
+    }
+}

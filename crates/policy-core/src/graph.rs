@@ -1,0 +1,308 @@
+//! The policy graph: nodes are policies, edges join a policy to the one it was regularised towards, paths
+//! are ordered lists of nodes that a trigger runs along (paper, section 3.2).
+
+use alloc::string::String;
+use alloc::vec::Vec;
+
+use crate::mlp::Mlp;
+use crate::route::RouteTable;
+
+/// Most policies in one graph.
+pub const MAX_NODES: usize = 64;
+
+/// One policy of the graph; its index is that of its parameters in the pack.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Node {
+    /// Unique name, such as `walk`.
+    pub name: String,
+    /// A pelvis lower than this above the ground, metres, means the character has fallen; `None` where low
+    /// is right, as in a crawl.
+    pub fall_height: Option<f32>,
+    /// Speed this policy was trained for, metres per second, where it has one.
+    pub speed_mps: Option<f32>,
+}
+
+/// A straight line between the parameters of two policies that is itself a good policy.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Edge {
+    /// The two nodes.
+    pub nodes: [usize; 2],
+    /// Time a character takes from one end to the other, seconds, above 0.
+    pub seconds: f32,
+    /// Euclidean distance between the parameters: the cost of the edge in graph search.
+    pub distance: f32,
+}
+
+/// An ordered list of nodes, each joined to the next by an edge.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Path {
+    /// Unique name, such as `speed`.
+    pub name: String,
+    /// Nodes from coordinate 0 on; at least two.
+    pub nodes: Vec<usize>,
+}
+
+impl Path {
+    /// The greatest coordinate on the path.
+    #[must_use]
+    pub fn end(&self) -> f32 {
+        (self.nodes.len() - 1) as f32
+    }
+
+    /// The place on the graph of a coordinate: between nodes i and i+1 lies `i + t`. Clamped to the path;
+    /// NaN is its start.
+    #[must_use]
+    pub fn position(&self, coordinate: f32) -> GraphPosition {
+        let coordinate = if coordinate.is_nan() { 0.0 } else { coordinate.clamp(0.0, self.end()) };
+        let segment = (coordinate as usize).min(self.nodes.len() - 2);
+        GraphPosition {
+            from: self.nodes[segment],
+            to: self.nodes[segment + 1],
+            t: coordinate - segment as f32,
+        }
+    }
+
+    /// The coordinate of a place on the graph, if the path runs through it.
+    #[must_use]
+    pub fn coordinate(&self, position: GraphPosition) -> Option<f32> {
+        let at_node = |node: usize| self.nodes.iter().position(|&n| n == node).map(|i| i as f32);
+        if let Some(node) = position.as_node() {
+            return at_node(node);
+        }
+        self.nodes.windows(2).enumerate().find_map(|(i, pair)| {
+            let t = position.along(pair[0], pair[1])?;
+            Some(i as f32 + t)
+        })
+    }
+}
+
+/// A place on the graph: `t` of the way along an edge. A node is any place with `from == to`, or `t` of 0 or 1.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct GraphPosition {
+    /// Node where `t` is 0.
+    pub from: usize,
+    /// Node where `t` is 1.
+    pub to: usize,
+    /// In [0, 1].
+    pub t: f32,
+}
+
+impl GraphPosition {
+    /// The place of a node.
+    #[must_use]
+    pub fn node(node: usize) -> Self {
+        Self { from: node, to: node, t: 0.0 }
+    }
+
+    /// The node, when the place is one.
+    #[must_use]
+    pub fn as_node(self) -> Option<usize> {
+        if self.from == self.to || self.t <= 0.0 {
+            Some(self.from)
+        } else if self.t >= 1.0 {
+            Some(self.to)
+        } else {
+            None
+        }
+    }
+
+    /// The nearer node.
+    #[must_use]
+    pub fn nearest_node(self) -> usize {
+        if self.t < 0.5 { self.from } else { self.to }
+    }
+
+    /// How far along the edge from `a` to `b` the place lies, if it lies on that edge or its ends.
+    #[must_use]
+    pub fn along(self, a: usize, b: usize) -> Option<f32> {
+        match self.as_node() {
+            Some(node) if node == a => Some(0.0),
+            Some(node) if node == b => Some(1.0),
+            Some(_) => None,
+            None if (self.from, self.to) == (a, b) => Some(self.t),
+            None if (self.from, self.to) == (b, a) => Some(1.0 - self.t),
+            None => None,
+        }
+    }
+}
+
+/// Nodes, edges and paths, and the cheapest ways between nodes. Immutable; part of a
+/// [`CharacterPack`](crate::CharacterPack).
+#[derive(Clone, Debug)]
+pub struct PolicyGraph {
+    nodes: Vec<Node>,
+    edges: Vec<Edge>,
+    paths: Vec<Path>,
+    routes: RouteTable,
+}
+
+/// Why a graph can't be made.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum GraphError {
+    /// No node, or too many.
+    #[error("expected 1 to {MAX_NODES} policies, found {found}")]
+    NodeCount {
+        /// Nodes given.
+        found: usize,
+    },
+    /// Two things of one kind share a name, or the name is empty.
+    #[error("expected a {kind} name that is not empty and unique, found \"{name}\"")]
+    Name {
+        /// `policy`, `path`, ...
+        kind: &'static str,
+        /// The name.
+        name: String,
+    },
+    /// A number of a node is not what it must be.
+    #[error("expected {expected} for {field} of policy \"{node}\", found {found}")]
+    NodeNumber {
+        /// Name of the node.
+        node: String,
+        /// Name of the field.
+        field: &'static str,
+        /// What it must be.
+        expected: &'static str,
+        /// What it is.
+        found: f32,
+    },
+    /// An edge joins a node to itself, to a node that is not there, or takes no finite time above 0.
+    #[error("expected edge {edge} to join two different policies in a finite time above 0, found {found:?}")]
+    Edge {
+        /// Index of the edge.
+        edge: usize,
+        /// The edge.
+        found: Edge,
+    },
+    /// A path is too short or runs where there is no edge.
+    #[error("expected path \"{path}\" to run along edges from node to node, found {from} then {to:?}")]
+    Path {
+        /// Name of the path.
+        path: String,
+        /// Index of a node.
+        from: usize,
+        /// Index of the next node, if any.
+        to: Option<usize>,
+    },
+}
+
+impl PolicyGraph {
+    /// A graph of nodes, edges as (nodes, seconds), and paths; `policies` are the nodes' parameters and
+    /// give the distances.
+    ///
+    /// # Errors
+    /// When a name, number, edge or path is not as [`GraphError`] says.
+    ///
+    /// # Panics
+    /// When there are not as many policies as nodes or their shapes differ; a pack is checked before.
+    pub fn from_parts(
+        nodes: Vec<Node>,
+        edges: &[([usize; 2], f32)],
+        paths: Vec<Path>,
+        policies: &[Mlp],
+    ) -> Result<Self, GraphError> {
+        assert_eq!(nodes.len(), policies.len(), "one policy for each node");
+        if !(1..=MAX_NODES).contains(&nodes.len()) {
+            return Err(GraphError::NodeCount { found: nodes.len() });
+        }
+        check_names("policy", nodes.iter().map(|n| n.name.as_str()))?;
+        check_names("path", paths.iter().map(|p| p.name.as_str()))?;
+        for node in &nodes {
+            check_node(node)?;
+        }
+        let mut checked = Vec::with_capacity(edges.len());
+        for (index, &(ends, seconds)) in edges.iter().enumerate() {
+            let mut edge = Edge { nodes: ends, seconds, distance: 0.0 };
+            let [a, b] = ends;
+            let joins = a != b && a < nodes.len() && b < nodes.len();
+            let timed = seconds > 0.0 && seconds.is_finite();
+            if !joins || !timed {
+                return Err(GraphError::Edge { edge: index, found: edge });
+            }
+            edge.distance = libm::sqrt(policies[a].squared_distance(&policies[b])) as f32;
+            checked.push(edge);
+        }
+        let routes = RouteTable::new(nodes.len(), &checked);
+        let graph = Self { nodes, edges: checked, paths, routes };
+        for path in &graph.paths {
+            graph.check_path(path)?;
+        }
+        Ok(graph)
+    }
+
+    fn check_path(&self, path: &Path) -> Result<(), GraphError> {
+        let bad = |from, to| Err(GraphError::Path { path: path.name.clone(), from, to });
+        if path.nodes.len() < 2 {
+            return bad(path.nodes.first().copied().unwrap_or(usize::MAX), None);
+        }
+        match path.nodes.windows(2).find(|pair| self.edge_between(pair[0], pair[1]).is_none()) {
+            Some(pair) => bad(pair[0], Some(pair[1])),
+            None => Ok(()),
+        }
+    }
+
+    /// Nodes, by index.
+    #[must_use]
+    pub fn nodes(&self) -> &[Node] {
+        &self.nodes
+    }
+
+    /// Edges, by index.
+    #[must_use]
+    pub fn edges(&self) -> &[Edge] {
+        &self.edges
+    }
+
+    /// Paths, by index.
+    #[must_use]
+    pub fn paths(&self) -> &[Path] {
+        &self.paths
+    }
+
+    /// Cheapest ways between all nodes.
+    #[must_use]
+    pub fn routes(&self) -> &RouteTable {
+        &self.routes
+    }
+
+    /// Index of the node called `name`.
+    #[must_use]
+    pub fn node_named(&self, name: &str) -> Option<usize> {
+        self.nodes.iter().position(|n| n.name == name)
+    }
+
+    /// Index of the path called `name`.
+    #[must_use]
+    pub fn path_named(&self, name: &str) -> Option<usize> {
+        self.paths.iter().position(|p| p.name == name)
+    }
+
+    /// The edge that joins two nodes.
+    #[must_use]
+    pub fn edge_between(&self, a: usize, b: usize) -> Option<&Edge> {
+        self.edges.iter().find(|e| e.nodes == [a, b] || e.nodes == [b, a])
+    }
+}
+
+pub(crate) fn check_names<'a>(
+    kind: &'static str,
+    names: impl Iterator<Item = &'a str> + Clone,
+) -> Result<(), GraphError> {
+    for (i, name) in names.clone().enumerate() {
+        if name.is_empty() || names.clone().take(i).any(|n| n == name) {
+            return Err(GraphError::Name { kind, name: name.into() });
+        }
+    }
+    Ok(())
+}
+
+fn check_node(node: &Node) -> Result<(), GraphError> {
+    let fields = [("fall_height", node.fall_height), ("speed_mps", node.speed_mps)];
+    for (field, number) in fields {
+        if let Some(found) = number.filter(|n| !n.is_finite() || *n < 0.0) {
+            let expected = "a finite number of at least 0";
+            return Err(GraphError::NodeNumber { node: node.name.clone(), field, expected, found });
+        }
+    }
+    Ok(())
+}

@@ -1,0 +1,125 @@
+//! Why a character pack can't be loaded.
+
+use alloc::string::String;
+
+use crate::action::ActionScalingError;
+use crate::graph::GraphError;
+use crate::mlp::MlpError;
+use crate::normaliser::NormaliserError;
+
+/// Why a character pack can't be made or read. Nothing is half loaded: there is a whole pack or this.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum PackError {
+    /// The bytes are no safetensors file.
+    #[error("expected a safetensors file, found: {found}")]
+    Container {
+        /// What the reader says.
+        found: String,
+    },
+    /// The file has no manifest.
+    #[error("expected the field \"{}\" in the file's metadata, found none", crate::pack_bytes::MANIFEST_KEY)]
+    NoManifest,
+    /// The manifest is not the JSON it must be.
+    #[error("expected a manifest as docs/pack-format.md says, found: {found}")]
+    Manifest {
+        /// What the parser says, with line and column.
+        found: String,
+    },
+    /// A field of the manifest has not the one value this library works with.
+    #[error("expected {field} to be {expected}, found {found}")]
+    Field {
+        /// Name of the field.
+        field: &'static str,
+        /// The value.
+        expected: String,
+        /// The value in the pack.
+        found: String,
+    },
+    /// A number of the manifest is out of its range.
+    #[error("expected {field} of {owner} to be {expected}, found {found}")]
+    Number {
+        /// Name of the field.
+        field: &'static str,
+        /// The skill or other thing it belongs to.
+        owner: String,
+        /// The range.
+        expected: &'static str,
+        /// The number in the pack.
+        found: f32,
+    },
+    /// A name stands for nothing.
+    #[error("expected the name of a {kind} in {field}, found \"{found}\"")]
+    UnknownName {
+        /// What it should name.
+        kind: &'static str,
+        /// Where it stands.
+        field: String,
+        /// The name.
+        found: String,
+    },
+    /// There are more or fewer of a thing than the manifest says.
+    #[error("expected {expected} {what}, found {found}")]
+    Count {
+        /// What is counted.
+        what: &'static str,
+        /// How many there must be.
+        expected: usize,
+        /// How many there are.
+        found: usize,
+    },
+    /// A tensor is missing.
+    #[error("expected tensor \"{name}\", found none")]
+    NoTensor {
+        /// Its name.
+        name: String,
+    },
+    /// A tensor belongs to nothing in the manifest.
+    #[error("expected only tensors of the manifest, found \"{name}\" as well")]
+    ExtraTensor {
+        /// Its name.
+        name: String,
+    },
+    /// A tensor has another type or shape.
+    #[error("expected tensor \"{name}\" to be F32 {expected:?}, found {found}")]
+    TensorShape {
+        /// Its name.
+        name: String,
+        /// The shape it must have.
+        expected: alloc::vec::Vec<usize>,
+        /// Its type and shape.
+        found: String,
+    },
+    /// A network can't be made of its tensors.
+    #[error("network \"{name}\": {source}")]
+    Network {
+        /// Name of the network.
+        name: String,
+        /// Why.
+        source: MlpError,
+    },
+    /// A network has not the widths it must have.
+    #[error("expected network \"{name}\" to have the layers {expected}, found {found:?}")]
+    Layers {
+        /// Name of the network.
+        name: String,
+        /// The widths it must have.
+        expected: String,
+        /// The widths it has.
+        found: alloc::vec::Vec<usize>,
+    },
+    /// A normaliser can't be made of its tensors.
+    #[error("{which} normaliser: {source}")]
+    Normaliser {
+        /// `observation` or `discriminator`.
+        which: &'static str,
+        /// Why.
+        source: NormaliserError,
+    },
+    /// The action scaling is not valid.
+    #[error("action scaling: {0}")]
+    Action(#[from] ActionScalingError),
+    /// The graph is not valid.
+    #[error("graph: {0}")]
+    Graph(#[from] GraphError),
+}
