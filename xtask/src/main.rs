@@ -87,7 +87,7 @@ struct TestArgs {
     /// Count a check that cannot run here (no cross target, no cargo-deny) as failed.
     #[arg(long)]
     strict: bool,
-    /// Install cargo-deny when it is missing.
+    /// Install cargo-deny when it is missing, as is done where CI is set; takes some minutes.
     #[arg(long)]
     deny: bool,
 }
@@ -112,7 +112,8 @@ fn dispatch(verb: Verb) -> Result<ExitCode> {
         Verb::Demo(arguments) => return demo::run(&workspace, arguments.arguments),
         Verb::Test(arguments) => {
             setup::prepare(&workspace, Purpose::Tests, !arguments.no_install)?;
-            let options = checks::Options { strict: arguments.strict, install_deny: arguments.deny };
+            let install_deny = arguments.deny || std::env::var_os("CI").is_some();
+            let options = checks::Options { strict: arguments.strict, install_deny };
             return Ok(checks::run(&workspace, options));
         }
         Verb::Imports => checks::imports::check(&workspace)?,
