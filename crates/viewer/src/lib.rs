@@ -1,1 +1,3 @@
-//! Placeholder crate root.
+//! The demo: draws the humanoid, reads pad, keyboard and mouse, and shows what the policies do.
+
+pub mod mannequin;

@@ -1,0 +1,2 @@
+//! The demo: a humanoid steered by pad, keyboard and mouse.
+fn main() {}

@@ -1,0 +1,191 @@
+//! Builds the two surfaces of the mannequin, suit and shells, with normals, skin and baked occlusion.
+
+use glam::{Vec3, Vec4};
+use policy_core::Body;
+
+use super::anatomy::{self, Piece};
+use super::field::{Shape, normal, smooth_union};
+use super::surface_nets;
+
+/// Width of the band around a joint in which the suit bends, metres.
+const BEND: f32 = 0.07;
+/// Fillet between neighbouring bodies of the suit.
+const SUIT_FILLET: f32 = 0.05;
+/// Edge of a mesh cell of the suit in the finest mesh.
+const SUIT_CELL: f32 = 0.0125;
+
+/// A vertex in the rest pose, pelvis at the origin, z up.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Vertex {
+    pub(super) position: Vec3,
+    pub(super) normal: Vec3,
+    /// How open the surface is to the sky, 0 to 1.
+    pub(super) openness: f32,
+    /// Up to four bodies and how much the vertex follows each; they sum to 255.
+    pub(super) bodies: [u8; 4],
+    pub(super) follow: [u8; 4],
+}
+
+/// Triangles of one material.
+#[derive(Default)]
+pub(super) struct Part {
+    pub(super) vertices: Vec<Vertex>,
+    pub(super) indices: Vec<u32>,
+}
+
+/// The distance fields of the whole mannequin in the rest pose.
+pub(super) struct Sculpture {
+    rest: [Vec3; 15],
+    shells: Vec<Piece>,
+    suit: Vec<(Body, Shape)>,
+}
+
+impl Sculpture {
+    pub(super) fn new() -> Self {
+        Self { rest: anatomy::rest_positions(), shells: anatomy::shells(), suit: anatomy::suit() }
+    }
+
+    /// Shells with cells `coarseness` times the finest.
+    pub(super) fn shells(&self, coarseness: f32) -> Part {
+        let mut part = Part::default();
+        for piece in &self.shells {
+            let origin = self.rest[piece.body.index()];
+            let (low, high) = bounds(piece.shapes.iter());
+            let field = |p: Vec3| piece_distance(piece, p);
+            let surface = surface_nets::mesh(low, high, piece.cell * coarseness, field);
+            let base = part.vertices.len() as u32;
+            part.indices.extend(surface.indices.iter().map(|i| base + i));
+            part.vertices.extend(surface.positions.iter().map(|&p| {
+                let follow = ([piece.body as u8, 0, 0, 0], [255, 0, 0, 0]);
+                self.vertex(origin + p, normal(p, field), follow)
+            }));
+        }
+        part
+    }
+
+    /// The suit, without what the shells hide.
+    pub(super) fn suit(&self, coarseness: f32) -> Part {
+        let low = Vec3::new(-0.2, -0.35, -0.9);
+        let high = Vec3::new(0.25, 0.35, 0.8);
+        let surface = surface_nets::mesh(low, high, SUIT_CELL * coarseness, |p| self.suit_distance(p));
+        let buried: Vec<bool> = surface.positions.iter().map(|&p| self.shell_distance(p) < -0.006).collect();
+        let mut part = Part::default();
+        let mut new_index = vec![u32::MAX; surface.positions.len()];
+        for triangle in surface.indices.chunks_exact(3) {
+            if triangle.iter().all(|&i| buried[i as usize]) {
+                continue;
+            }
+            for &i in triangle {
+                if new_index[i as usize] == u32::MAX {
+                    new_index[i as usize] = part.vertices.len() as u32;
+                    let p = surface.positions[i as usize];
+                    let follow = self.follow(p);
+                    part.vertices.push(self.vertex(p, normal(p, |q| self.suit_distance(q)), follow));
+                }
+                part.indices.push(new_index[i as usize]);
+            }
+        }
+        part
+    }
+
+    fn vertex(&self, position: Vec3, normal: Vec3, (bodies, follow): ([u8; 4], [u8; 4])) -> Vertex {
+        Vertex { position, normal, openness: self.openness(position, normal), bodies, follow }
+    }
+
+    /// Occlusion by what lies within 7 cm along the normal, from five samples of the field.
+    fn openness(&self, p: Vec3, n: Vec3) -> f32 {
+        let mut closed = 0.0;
+        let mut share = 1.0;
+        for step in 1..=5 {
+            let height = 0.014 * step as f32;
+            let q = p + n * height;
+            let free = self.shell_distance(q).min(self.suit_distance(q)).max(-0.01);
+            closed += share * (height - free).max(0.0) / height;
+            share *= 0.75;
+        }
+        (1.0 - 0.36 * closed).clamp(0.12, 1.0)
+    }
+
+    fn shell_distance(&self, p: Vec3) -> f32 {
+        self.shells
+            .iter()
+            .map(|piece| piece_distance(piece, p - self.rest[piece.body.index()]))
+            .fold(f32::INFINITY, f32::min)
+    }
+
+    fn body_distances(&self, p: Vec3) -> [f32; 15] {
+        let mut distances = [f32::INFINITY; 15];
+        for (body, shape) in &self.suit {
+            let d = &mut distances[body.index()];
+            *d = d.min(shape.distance(p - self.rest[body.index()]));
+        }
+        distances
+    }
+
+    /// Bodies that touch in the skeleton melt into each other; others do not, so arms stay off the trunk.
+    fn suit_distance(&self, p: Vec3) -> f32 {
+        let distances = self.body_distances(p);
+        let joined = Body::ALL.iter().filter_map(|b| Some((b.index(), b.parent()?.index())));
+        joined
+            .map(|(child, parent)| smooth_union(distances[child], distances[parent], fillet(child)))
+            .fold(f32::INFINITY, f32::min)
+    }
+
+    /// The nearest body and its neighbours in the skeleton share a vertex by how near their surfaces are.
+    fn follow(&self, p: Vec3) -> ([u8; 4], [u8; 4]) {
+        let distances = self.body_distances(p);
+        let nearest = (0..15).fold(0, |best, i| if distances[i] < distances[best] { i } else { best });
+        let linked = |i: usize| {
+            i == nearest
+                || Body::ALL[i].parent() == Some(Body::ALL[nearest])
+                || Body::ALL[nearest].parent() == Some(Body::ALL[i])
+        };
+        let mut shares: Vec<(usize, f32)> = (0..15)
+            .filter(|&i| linked(i))
+            .map(|i| (i, (1.0 - (distances[i] - distances[nearest]) / BEND).max(0.0)))
+            .map(|(i, s)| (i, s * s))
+            .collect();
+        shares.sort_by(|a, b| b.1.total_cmp(&a.1).then(a.0.cmp(&b.0)));
+        shares.truncate(4);
+        quantised(&shares)
+    }
+}
+
+fn fillet(child: usize) -> f32 {
+    if child == Body::Head.index() { 0.03 } else { SUIT_FILLET }
+}
+
+/// Shares as bytes that sum to 255, the largest taking what rounding leaves.
+fn quantised(shares: &[(usize, f32)]) -> ([u8; 4], [u8; 4]) {
+    let total: f32 = shares.iter().map(|s| s.1).sum();
+    let parts: Vec4 = Vec4::from_slice(&{
+        let mut all = [0.0; 4];
+        for (slot, share) in all.iter_mut().zip(shares) {
+            *slot = share.1 / total;
+        }
+        all
+    });
+    let mut bytes = (parts * 255.0).to_array().map(|v| v as u8);
+    let sum: u32 = bytes.iter().map(|&b| u32::from(b)).sum();
+    bytes[0] += (255 - sum) as u8;
+    let mut bodies = [0; 4];
+    for (i, share) in shares.iter().enumerate() {
+        bodies[i] = if bytes[i] == 0 { 0 } else { share.0 as u8 };
+    }
+    (bodies, bytes)
+}
+
+fn piece_distance(piece: &Piece, p: Vec3) -> f32 {
+    let mut joined = piece.shapes[0].distance(p);
+    for shape in &piece.shapes[1..] {
+        joined = smooth_union(joined, shape.distance(p), piece.fillet);
+    }
+    if piece.floor.is_finite() { -smooth_union(-joined, p.z - piece.floor, 0.006) } else { joined }
+}
+
+fn bounds<'a>(shapes: impl Iterator<Item = &'a Shape>) -> (Vec3, Vec3) {
+    let everything = (Vec3::splat(f32::INFINITY), Vec3::splat(f32::NEG_INFINITY));
+    let (low, high) = shapes.map(Shape::bounds).fold(everything, |a, b| (a.0.min(b.0), a.1.max(b.1)));
+    // A fillet bulges a little beyond its shapes.
+    (low - Vec3::splat(0.02), high + Vec3::splat(0.02))
+}
