@@ -3,6 +3,8 @@
 use mujoco_rs::wrappers::mj_data::MjtWarning;
 use policy_core::Body;
 
+use crate::dump::Dump;
+
 /// Which of MuJoCo's watches went off.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[non_exhaustive]
@@ -63,6 +65,8 @@ pub struct Diverged {
     pub warning: Warning,
     /// The first body it named; `None` when it names none.
     pub body: Option<Body>,
+    /// The state before the tick, to be saved and replayed.
+    pub dump: Box<Dump>,
 }
 
 fn at(body: Option<Body>) -> String {

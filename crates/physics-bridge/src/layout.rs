@@ -4,6 +4,7 @@
 use mujoco_rs::wrappers::mj_model::{MjModel, MjtBias, MjtGain, MjtJoint, MjtObjBase, MjtTrn};
 use policy_core::{BODY_COUNT, BODY_NAMES, Body, DOF_COUNT, JOINT_NAMES};
 
+use crate::diverged::Warning;
 use crate::model_error::ModelError;
 use crate::{QPOS_LEN, QVEL_LEN};
 
@@ -26,8 +27,10 @@ pub(crate) struct Layout {
     pub joint_ctrl: [usize; DOF_COUNT],
     /// Index of each joint's motor among the actuators.
     pub joint_actuator: [usize; DOF_COUNT],
-    /// MuJoCo's joint of each dof.
-    pub dof_joint: Box<[usize]>,
+    /// The body that each number of `qpos` moves.
+    pub qpos_body: [Body; QPOS_LEN],
+    /// The body that each number of `qvel` moves.
+    pub dof_body: [Body; QVEL_LEN],
     /// Lower and upper limit of each hinge, radians.
     pub limits: [[f64; 2]; DOF_COUNT],
 }
@@ -52,19 +55,68 @@ impl Layout {
             joint_dof: [0; DOF_COUNT],
             joint_ctrl: [0; DOF_COUNT],
             joint_actuator: [0; DOF_COUNT],
-            dof_joint: model.dof_jntid().iter().map(|&j| j as usize).collect(),
+            qpos_body: [Body::Pelvis; QPOS_LEN],
+            dof_body: [Body::Pelvis; QVEL_LEN],
             limits: [[0.0; 2]; DOF_COUNT],
         };
         for (index, name) in JOINT_NAMES.into_iter().enumerate() {
             let joint = hinge(model, name)?;
             let actuator = motor(model, name, joint)?;
+            let body = layout.bodies[model.jnt_bodyid()[joint] as usize];
+            let body =
+                body.ok_or(ModelError::Kind { kind: "joint", name, expected: "a body of the humanoid" })?;
             layout.joint_qpos[index] = model.jnt_qposadr()[joint] as usize;
             layout.joint_dof[index] = model.jnt_dofadr()[joint] as usize;
+            layout.qpos_body[layout.joint_qpos[index]] = body;
+            layout.dof_body[layout.joint_dof[index]] = body;
             layout.joint_actuator[index] = actuator;
             layout.joint_ctrl[index] = model.actuator_ctrladr()[actuator] as usize;
             layout.limits[index] = model.jnt_range()[joint];
         }
         Ok(layout)
+    }
+
+    /// Our order of MuJoCo's `qpos`.
+    pub(crate) fn our_qpos(&self, theirs: &[f64]) -> [f64; QPOS_LEN] {
+        let mut ours = [0.0; QPOS_LEN];
+        ours[..7].copy_from_slice(&theirs[self.root_qpos..self.root_qpos + 7]);
+        ours[7..].iter_mut().zip(&self.joint_qpos).for_each(|(angle, &index)| *angle = theirs[index]);
+        ours
+    }
+
+    /// Our order of MuJoCo's `qvel`.
+    pub(crate) fn our_qvel(&self, theirs: &[f64]) -> [f64; QVEL_LEN] {
+        let mut ours = [0.0; QVEL_LEN];
+        ours[..6].copy_from_slice(&theirs[self.root_dof..self.root_dof + 6]);
+        ours[6..].iter_mut().zip(&self.joint_dof).for_each(|(velocity, &index)| *velocity = theirs[index]);
+        ours
+    }
+
+    /// Writes our `qpos` in MuJoCo's order.
+    pub(crate) fn write_qpos(&self, ours: &[f64; QPOS_LEN], theirs: &mut [f64]) {
+        theirs[self.root_qpos..self.root_qpos + 7].copy_from_slice(&ours[..7]);
+        ours[7..].iter().zip(&self.joint_qpos).for_each(|(&angle, &index)| theirs[index] = angle);
+    }
+
+    /// Writes our `qvel` in MuJoCo's order.
+    pub(crate) fn write_qvel(&self, ours: &[f64; QVEL_LEN], theirs: &mut [f64]) {
+        theirs[self.root_dof..self.root_dof + 6].copy_from_slice(&ours[..6]);
+        ours[6..].iter().zip(&self.joint_dof).for_each(|(&velocity, &index)| theirs[index] = velocity);
+    }
+
+    /// The body that a number named by a warning of MuJoCo belongs to.
+    pub(crate) fn body_of(&self, warning: Warning, index: usize) -> Option<Body> {
+        match warning {
+            Warning::BadPosition => self.qpos_body.get(index).copied(),
+            Warning::BadVelocity | Warning::BadAcceleration | Warning::SingularInertia => {
+                self.dof_body.get(index).copied()
+            }
+            Warning::BadControl => {
+                let joint = self.joint_ctrl.iter().position(|&ctrl| ctrl == index)?;
+                self.dof_body.get(self.joint_dof[joint]).copied()
+            }
+            Warning::ContactsFull | Warning::ConstraintsFull => None,
+        }
     }
 }
 

@@ -9,19 +9,42 @@
 //! loads its first [`Model`] before it starts threads.
 
 mod character;
+mod contact;
+mod crowd;
 mod diverged;
+mod dump;
+mod ground;
+mod history;
 mod layout;
 mod logging;
 mod mjcf;
 mod model;
 mod model_error;
 mod pose;
+mod push;
+mod sense;
+mod set_up;
+mod settings;
+mod shape;
+mod snapshot;
+mod terrain;
 
 pub use character::Character;
+pub use contact::Contact;
+pub use crowd::{Crowd, CrowdError};
 pub use diverged::{Diverged, Warning};
+pub use dump::{Dump, DumpError};
+pub use ground::HeightField;
+pub use history::{HISTORY_SECS, NotRecorded};
 pub use model::Model;
 pub use model_error::ModelError;
 pub use pose::{BodyPoses, Pose, PoseError};
+pub use push::PushError;
+pub use set_up::{ModelMismatch, WALKING_START_MPS};
+pub use settings::Settings;
+pub use shape::{Shape, ShapeKind};
+pub use snapshot::{Snapshot, SnapshotMismatch};
+pub use terrain::Terrain;
 
 /// Control ticks per second.
 pub const CONTROL_HZ: u32 = 30;

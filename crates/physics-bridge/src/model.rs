@@ -7,10 +7,15 @@ use mujoco_rs::wrappers::mj_data::{MjData, MjtState};
 use mujoco_rs::wrappers::mj_model::{MjModel, MjtObjBase};
 use policy_core::DOF_COUNT;
 
-use crate::CONTROL_HZ;
+use crate::ground::{Ground, HeightField};
 use crate::layout::Layout;
 use crate::mjcf;
 use crate::model_error::ModelError;
+use crate::pose::Pose;
+use crate::settings::Settings;
+use crate::shape::{Shape, shapes};
+use crate::terrain::Terrain;
+use crate::{CONTROL_HZ, QPOS_LEN, QVEL_LEN};
 
 /// Which numbers make up the whole state of a simulation.
 pub(crate) const STATE: u32 = MjtState::mjSTATE_INTEGRATION as u32;
@@ -22,14 +27,26 @@ const MEMORY_BYTES: std::ops::RangeInclusive<i64> = (1 << 20)..=(256 << 20);
 /// `mjINT_RK4`.
 const RUNGE_KUTTA: i32 = 1;
 
-/// A humanoid that many characters share. Cloning copies a pointer.
+/// Name of the keyframe in which a character stands.
+const STAND: &str = "stand";
+
+/// A humanoid and its ground, shared by many characters. Cloning copies two pointers.
 ///
 /// ```
 /// # fn main() -> Result<(), physics_bridge::ModelError> {
 /// # const HUMANOID: &str = include_str!(concat!(env!("CARGO_MANIFEST_DIR"), "/../../assets/humanoid.xml"));
-/// let model = physics_bridge::Model::from_mjcf(HUMANOID)?;
+/// use physics_bridge::{Model, Settings, Terrain};
+///
+/// let model = Model::from_mjcf(HUMANOID)?;
 /// assert_eq!(model.substeps(), 4);
-/// assert!(physics_bridge::Model::from_mjcf("<mujoco/>").is_err());
+///
+/// let hills = model.with_terrain(Terrain::Wavy { height_m: 0.2, wavelength_m: 4.0, seed: 1 })?;
+/// assert!(hills.height_at(3.0, 1.0) >= 0.0);
+///
+/// let mut settings = Settings::default();
+/// settings.gravity = 0.165;
+/// let moon = model.with_settings(settings)?;
+/// assert_eq!(moon.mass_kg(), model.mass_kg());
 /// # Ok(())
 /// # }
 /// ```
@@ -37,27 +54,35 @@ const RUNGE_KUTTA: i32 = 1;
 pub struct Model {
     shared: Arc<Shared>,
     physics: Arc<MjModel>,
+    settings: Settings,
 }
 
 /// What stays the same whatever the settings.
 #[derive(Debug)]
 struct Shared {
+    mjcf: Box<str>,
+    terrain: Terrain,
+    base: Arc<MjModel>,
     layout: Layout,
+    ground: Ground,
+    shapes: Box<[Shape]>,
+    shape_geoms: Box<[usize]>,
     substeps: u32,
+    stand: [f64; QPOS_LEN],
 }
 
 impl Model {
     /// Compiles the text of an MJCF, such as `include_str!("../assets/humanoid.xml")`, on flat ground.
     ///
+    /// The keyframe `stand`, if there is one, is the pose in which characters stand; otherwise it is the
+    /// pose of the MJCF itself.
+    ///
     /// # Errors
     /// When the text is no valid MJCF, or not of policy-core's humanoid: 15 bodies, 28 limited hinges and
-    /// position servos of the same names, a floating pelvis, a `timestep` that divides 1/30 s, a plane
+    /// position servos of the same names, a floating pelvis, a `timestep` that divides 1/30 s, a level plane
     /// named `floor`.
     pub fn from_mjcf(mjcf: &str) -> Result<Self, ModelError> {
-        let physics = mjcf::compile(mjcf)?;
-        let layout = Layout::of(&physics)?;
-        let substeps = check_options(&physics)?;
-        Ok(Self { shared: Arc::new(Shared { layout, substeps }), physics: Arc::new(physics) })
+        Self::compile(mjcf, Terrain::Flat)
     }
 
     /// Compiles the bytes of an MJCF, such as `include_bytes!("../assets/humanoid.xml")`.
@@ -82,6 +107,65 @@ impl Model {
             .map_err(|source| ModelError::File { path: path.to_owned(), source: Box::new(source) })
     }
 
+    /// The same humanoid, with the same settings, on other ground. Compiles anew, some milliseconds.
+    ///
+    /// # Errors
+    /// When a number of the terrain is out of its range.
+    pub fn with_terrain(&self, terrain: Terrain) -> Result<Self, ModelError> {
+        Self::compile(&self.shared.mjcf, terrain)?.with_settings(self.settings)
+    }
+
+    /// The same humanoid on the same ground, with these settings in place of the present ones. Characters
+    /// take it up by [`Character::set_model`](crate::Character::set_model). Copies the compiled model.
+    ///
+    /// # Errors
+    /// When a setting is out of its range.
+    pub fn with_settings(&self, settings: Settings) -> Result<Self, ModelError> {
+        let shared = &self.shared;
+        let physics = if settings == Settings::default() {
+            Arc::clone(&shared.base)
+        } else {
+            Arc::new(settings.apply_to(&shared.base, &shared.layout)?)
+        };
+        Ok(Self { shared: Arc::clone(shared), physics, settings })
+    }
+
+    /// Compiles the text on any ground.
+    pub(crate) fn compile(mjcf: &str, terrain: Terrain) -> Result<Self, ModelError> {
+        let base = Arc::new(mjcf::compile(mjcf, &terrain)?);
+        let substeps = check_options(&base)?;
+        let layout = Layout::of(&base)?;
+        let ground = Ground::of(&base)?;
+        let (shapes, shape_geoms) = shapes(&base, &layout);
+        let stand = match base.name_to_id(MjtObjBase::mjOBJ_KEY, STAND) {
+            Some(key) => layout.our_qpos(&base.key_qpos()[key * QPOS_LEN..]),
+            None => layout.our_qpos(base.qpos0()),
+        };
+        Pose::check(&stand, &[0.0; QVEL_LEN]).map_err(|source| ModelError::Stand { source })?;
+        let physics = Arc::clone(&base);
+        let mjcf = mjcf.into();
+        let shared = Shared { mjcf, terrain, base, layout, ground, shapes, shape_geoms, substeps, stand };
+        Ok(Self { shared: Arc::new(shared), physics, settings: Settings::default() })
+    }
+
+    /// Text of the MJCF.
+    #[must_use]
+    pub fn mjcf(&self) -> &str {
+        &self.shared.mjcf
+    }
+
+    /// The ground.
+    #[must_use]
+    pub fn terrain(&self) -> Terrain {
+        self.shared.terrain
+    }
+
+    /// Gravity, friction and strength.
+    #[must_use]
+    pub fn settings(&self) -> Settings {
+        self.settings
+    }
+
     /// Physics steps in a control tick.
     #[must_use]
     pub fn substeps(&self) -> u32 {
@@ -97,7 +181,7 @@ impl Model {
     /// Mass of the whole character, kilograms.
     #[must_use]
     pub fn mass_kg(&self) -> f64 {
-        self.physics.totalmass()
+        self.physics.body_subtreemass()[self.shared.layout.body_ids[0]]
     }
 
     /// Lower and upper limit of every hinge, radians, in the order of [`policy_core::JOINT_NAMES`].
@@ -107,22 +191,50 @@ impl Model {
         (limits.map(|[low, _]| low as f32), limits.map(|[_, high]| high as f32))
     }
 
-    /// Height of the ground at a point, metres.
+    /// The spheres, capsules and boxes that the bodies are made of.
     #[must_use]
-    pub fn height_at(&self, _x: f32, _y: f32) -> f32 {
-        0.0
+    pub fn shapes(&self) -> &[Shape] {
+        &self.shared.shapes
+    }
+
+    /// Height of the ground at a point, metres, world space. Sees the plane `floor` and the terrain, and
+    /// nothing else that an MJCF may have put on them.
+    #[must_use]
+    pub fn height_at(&self, x: f32, y: f32) -> f32 {
+        self.shared.ground.height_at(x, y)
+    }
+
+    /// The terrain as a grid, to draw it; `None` on flat ground.
+    #[must_use]
+    pub fn height_field(&self) -> Option<&HeightField> {
+        self.shared.ground.field.as_ref()
+    }
+
+    /// True when the two differ in their settings at most.
+    pub(crate) fn shares_ground_with(&self, other: &Model) -> bool {
+        Arc::ptr_eq(&self.shared, &other.shared)
     }
 
     pub(crate) fn layout(&self) -> &Layout {
         &self.shared.layout
     }
 
-    pub(crate) fn new_data(&self) -> MjData<Arc<MjModel>> {
-        MjData::new(Arc::clone(&self.physics))
+    /// MuJoCo's geom of each shape.
+    pub(crate) fn shape_geoms(&self) -> &[usize] {
+        &self.shared.shape_geoms
     }
 
-    pub(crate) fn state_len(&self) -> usize {
-        self.physics.state_size(STATE)
+    /// `qpos` of a standing character, in our order; its place means nothing.
+    pub(crate) fn stand(&self) -> &[f64; QPOS_LEN] {
+        &self.shared.stand
+    }
+
+    pub(crate) fn physics(&self) -> &Arc<MjModel> {
+        &self.physics
+    }
+
+    pub(crate) fn new_data(&self) -> MjData<Arc<MjModel>> {
+        MjData::new(Arc::clone(&self.physics))
     }
 }
 
@@ -134,9 +246,6 @@ fn check_options(physics: &MjModel) -> Result<u32, ModelError> {
     let found = physics.narena();
     if !MEMORY_BYTES.contains(&found) {
         return Err(ModelError::Memory { least: *MEMORY_BYTES.start(), most: *MEMORY_BYTES.end(), found });
-    }
-    if physics.name_to_id(MjtObjBase::mjOBJ_GEOM, "floor").is_none() {
-        return Err(ModelError::Missing { kind: "geom", name: "floor" });
     }
     let timestep_secs = physics.opt().timestep;
     let substeps = 1.0 / (f64::from(CONTROL_HZ) * timestep_secs);

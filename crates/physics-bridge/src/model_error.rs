@@ -3,6 +3,7 @@
 use std::path::PathBuf;
 
 use crate::CONTROL_HZ;
+use crate::pose::PoseError;
 
 /// Why a [`Model`](crate::Model) can't be made of an MJCF.
 #[derive(Debug, thiserror::Error)]
@@ -85,6 +86,12 @@ pub enum ModelError {
         most: i64,
         /// In the MJCF, bytes.
         found: i64,
+    },
+    /// The keyframe `stand` is no pose.
+    #[error("in the keyframe stand: {source}")]
+    Stand {
+        /// What is wrong with it.
+        source: PoseError,
     },
     /// A number of a [`Terrain`](crate::Terrain) is out of its range.
     #[error("expected {field} of the terrain between {least} and {most}, found {found}")]

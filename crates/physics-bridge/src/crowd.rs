@@ -1,0 +1,192 @@
+//! Many characters on all cores. Each is sensed, steered and stepped by one worker, in one go, so that its
+//! memory is hot; nothing is shared, so the number of workers changes no bit of the result.
+
+use std::num::NonZeroUsize;
+
+use policy_core::{CharacterState, JointTargets};
+use rayon::prelude::*;
+use rayon::{ThreadPool, ThreadPoolBuilder};
+
+use crate::character::Character;
+use crate::diverged::Diverged;
+
+/// Characters that are ticked together.
+///
+/// ```
+/// # fn main() -> Result<(), Box<dyn std::error::Error>> {
+/// # const HUMANOID: &str = include_str!(concat!(env!("CARGO_MANIFEST_DIR"), "/../../assets/humanoid.xml"));
+/// use physics_bridge::{Character, Crowd, Model};
+///
+/// let model = Model::from_mjcf(HUMANOID)?;
+/// let mut crowd = Crowd::new((0..4).map(|_| Character::new(&model)).collect(), None)?;
+/// let mut ticks = vec![0; crowd.len()]; // what each character's controller keeps from tick to tick
+/// let diverged = crowd.tick_with(&mut ticks, |_index, ticks, _state, targets| {
+///     *ticks += 1;
+///     targets.0[0] = 0.1; // a controller makes targets of the state here
+/// });
+/// assert_eq!((diverged, ticks), (0, vec![1; 4]));
+/// # Ok(())
+/// # }
+/// ```
+#[derive(Debug)]
+pub struct Crowd {
+    members: Vec<Member>,
+    pool: ThreadPool,
+}
+
+#[derive(Debug)]
+struct Member {
+    character: Character,
+    failure: Option<Diverged>,
+}
+
+/// Why a crowd can't be made.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum CrowdError {
+    /// The system gives no threads.
+    #[error("cannot start the threads of a crowd")]
+    Threads {
+        /// Why.
+        source: rayon::ThreadPoolBuildError,
+    },
+}
+
+impl Crowd {
+    /// A crowd of `characters` on `threads`, by default one for every core.
+    ///
+    /// # Errors
+    /// When the system gives no threads.
+    pub fn new(characters: Vec<Character>, threads: Option<NonZeroUsize>) -> Result<Self, CrowdError> {
+        let pool = ThreadPoolBuilder::new()
+            .num_threads(threads.map_or(0, NonZeroUsize::get))
+            .thread_name(|index| format!("crowd-{index}"))
+            .build()
+            .map_err(|source| CrowdError::Threads { source })?;
+        let members = characters.into_iter().map(|character| Member { character, failure: None }).collect();
+        Ok(Self { members, pool })
+    }
+
+    /// Number of characters.
+    #[must_use]
+    pub fn len(&self) -> usize {
+        self.members.len()
+    }
+
+    /// True when there are none.
+    #[must_use]
+    pub fn is_empty(&self) -> bool {
+        self.members.is_empty()
+    }
+
+    /// Threads that step them.
+    #[must_use]
+    pub fn threads(&self) -> usize {
+        self.pool.current_num_threads()
+    }
+
+    /// The characters.
+    pub fn characters(&self) -> impl ExactSizeIterator<Item = &Character> {
+        self.members.iter().map(|member| &member.character)
+    }
+
+    /// The characters, to pose or push them.
+    pub fn characters_mut(&mut self) -> impl ExactSizeIterator<Item = &mut Character> {
+        self.members.iter_mut().map(|member| &mut member.character)
+    }
+
+    /// A character.
+    ///
+    /// # Panics
+    /// When there is none of that index.
+    #[must_use]
+    pub fn character(&self, index: usize) -> &Character {
+        &self.members[index].character
+    }
+
+    /// A character, to pose or push it.
+    ///
+    /// # Panics
+    /// When there is none of that index.
+    pub fn character_mut(&mut self, index: usize) -> &mut Character {
+        &mut self.members[index].character
+    }
+
+    /// Those that diverged in the last tick, with their index. Each is in its state before that tick.
+    pub fn diverged(&self) -> impl Iterator<Item = (usize, &Diverged)> {
+        self.members.iter().enumerate().filter_map(|(index, member)| Some((index, member.failure.as_ref()?)))
+    }
+
+    /// Runs one control tick of every character: `policy` gets its index and state, and changes the targets
+    /// (all zero before) that it is then stepped with. Answers how many diverged.
+    ///
+    /// # Panics
+    /// When `policy` does.
+    pub fn tick<F>(&mut self, policy: F) -> usize
+    where
+        F: Fn(usize, &CharacterState, &mut JointTargets) + Sync,
+    {
+        self.pool.install(|| {
+            let run = |(index, member): (usize, &mut Member)| {
+                member.tick(|state, targets| policy(index, state, targets))
+            };
+            self.members.par_iter_mut().enumerate().map(run).sum()
+        })
+    }
+
+    /// As [`Crowd::tick`], with something of each character's own, such as its controller.
+    ///
+    /// # Panics
+    /// When there are not as many `controllers` as characters, or when `policy` panics.
+    pub fn tick_with<C, F>(&mut self, controllers: &mut [C], policy: F) -> usize
+    where
+        C: Send,
+        F: Fn(usize, &mut C, &CharacterState, &mut JointTargets) + Sync,
+    {
+        assert_eq!(controllers.len(), self.members.len(), "one controller for each character");
+        self.pool.install(|| {
+            let run = |(index, (member, controller)): (usize, (&mut Member, &mut C))| {
+                member.tick(|state, targets| policy(index, controller, state, targets))
+            };
+            self.members.par_iter_mut().zip(controllers).enumerate().map(run).sum()
+        })
+    }
+
+    /// Senses every character, for policies that are evaluated all at once.
+    ///
+    /// # Panics
+    /// When there are not as many `states` as characters.
+    pub fn sense_into(&self, states: &mut [CharacterState]) {
+        assert_eq!(states.len(), self.members.len(), "one state for each character");
+        self.pool.install(|| {
+            self.members
+                .par_iter()
+                .zip(states)
+                .for_each(|(member, state)| member.character.sense_into(state));
+        });
+    }
+
+    /// Steps every character with its targets. Answers how many diverged.
+    ///
+    /// # Panics
+    /// When there are not as many `targets` as characters.
+    pub fn step(&mut self, targets: &[JointTargets]) -> usize {
+        assert_eq!(targets.len(), self.members.len(), "joint targets for each character");
+        self.pool.install(|| self.members.par_iter_mut().zip(targets).map(|(member, t)| member.step(t)).sum())
+    }
+}
+
+impl Member {
+    fn tick(&mut self, policy: impl FnOnce(&CharacterState, &mut JointTargets)) -> usize {
+        let (mut state, mut targets) = (CharacterState::default(), JointTargets::default());
+        self.character.sense_into(&mut state);
+        policy(&state, &mut targets);
+        self.step(&targets)
+    }
+
+    fn step(&mut self, targets: &JointTargets) -> usize {
+        self.character.actuate(targets);
+        self.failure = self.character.step().err();
+        usize::from(self.failure.is_some())
+    }
+}

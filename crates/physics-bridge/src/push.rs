@@ -1,0 +1,109 @@
+//! Pushes from outside: a force on a body for a while, or an impulse.
+
+use glam::Vec3;
+use mujoco_rs::wrappers::mj_data::MjData;
+use mujoco_rs::wrappers::mj_model::MjModel;
+use policy_core::{BODY_COUNT, Body};
+use serde::{Deserialize, Serialize};
+use std::sync::Arc;
+
+use crate::character::Character;
+
+/// Why a push is refused.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum PushError {
+    /// A number is not finite, or too large to mean anything.
+    #[error("expected {what} of at most {most} in size, found {found}")]
+    Size {
+        /// `a force` in newtons, `an impulse` in newton seconds or `a duration` in seconds.
+        what: &'static str,
+        /// The limit.
+        most: f32,
+        /// Its size.
+        found: f32,
+    },
+}
+
+/// Largest force, newtons, and largest impulse, newton seconds.
+const MOST_FORCE: f32 = 1e6;
+
+/// Longest push, seconds.
+const MOST_SECS: f32 = 3600.0;
+
+/// The pushes under way. World axes, at the centre of mass of each body.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(crate) struct Pushes {
+    /// Newtons.
+    forces: [[f32; 3]; BODY_COUNT],
+    /// How much longer each force acts.
+    substeps_left: [u32; BODY_COUNT],
+    /// Newton seconds, for the next substep.
+    impulses: [[f32; 3]; BODY_COUNT],
+    /// True while anything above is to be written to MuJoCo, or to be taken back from it.
+    under_way: bool,
+}
+
+impl Pushes {
+    /// Writes the forces of the substep that comes next.
+    pub(crate) fn apply(&mut self, data: &mut MjData<Arc<MjModel>>, body_ids: &[usize; BODY_COUNT]) {
+        if !self.under_way {
+            return;
+        }
+        self.under_way = false;
+        let timestep = data.model_opt().timestep;
+        let applied = data.xfrc_applied_mut();
+        for (index, &id) in body_ids.iter().enumerate() {
+            let mut force = Vec3::from(self.impulses[index]).as_dvec3() / timestep;
+            if self.substeps_left[index] > 0 {
+                self.substeps_left[index] -= 1;
+                force += Vec3::from(self.forces[index]).as_dvec3();
+            }
+            self.impulses[index] = [0.0; 3];
+            applied[id][..3].copy_from_slice(&force.to_array());
+            // One more substep after the last one, to write zeros.
+            self.under_way |= force.length_squared() > 0.0 || self.substeps_left[index] > 0;
+        }
+    }
+
+    /// True when every number is one that [`Character::push`] and [`Character::impulse`] accept.
+    pub(crate) fn are_sound(&self) -> bool {
+        let sound = |v: &[f32; 3]| Vec3::from(*v).length() <= MOST_FORCE;
+        self.forces.iter().all(sound) && self.impulses.iter().all(sound)
+    }
+}
+
+impl Character {
+    /// Pushes `body` at its centre of mass with `force` newtons, world axes, for `secs` from now, rounded to
+    /// whole substeps. Takes the place of the push that the body is still under; ends when it is posed.
+    ///
+    /// # Errors
+    /// When a number is not finite, the force is over 1 MN, or the duration negative or over an hour.
+    pub fn push(&mut self, body: Body, force: Vec3, secs: f32) -> Result<(), PushError> {
+        at_most("a force", force.length(), MOST_FORCE)?;
+        at_most("a duration", secs, MOST_SECS)?;
+        let substeps = (f64::from(secs) / self.model.timestep_secs()).round();
+        self.pushes.forces[body.index()] = force.to_array();
+        self.pushes.substeps_left[body.index()] = substeps as u32;
+        self.pushes.under_way = true;
+        Ok(())
+    }
+
+    /// Hits `body` at its centre of mass with `impulse` newton seconds, world axes, during the next substep.
+    /// Several impulses before it add up.
+    ///
+    /// # Errors
+    /// When the impulse is not finite or over 1 MN s.
+    pub fn impulse(&mut self, body: Body, impulse: Vec3) -> Result<(), PushError> {
+        let sum = Vec3::from(self.pushes.impulses[body.index()]) + impulse;
+        at_most("an impulse", sum.length(), MOST_FORCE)?;
+        self.pushes.impulses[body.index()] = sum.to_array();
+        self.pushes.under_way = true;
+        Ok(())
+    }
+}
+
+fn at_most(what: &'static str, found: f32, most: f32) -> Result<(), PushError> {
+    if (0.0..=most).contains(&found) { Ok(()) } else { Err(PushError::Size { what, most, found }) }
+}
