@@ -2,11 +2,13 @@
 //!
 //! They need a nightly compiler, so they are no part of the checks.
 
-use std::path::Path;
+use std::fs;
+use std::path::{Path, PathBuf};
 use std::process::Command;
 
 use anyhow::{Context, Result, bail, ensure};
 use clap::Args;
+use serde_json::Value;
 
 use crate::setup::{self, Purpose};
 use crate::workspace::{Workspace, answers, run as run_command};
@@ -38,6 +40,7 @@ pub fn run(workspace: &Workspace, arguments: &FuzzArgs) -> Result<()> {
     setup::prepare(workspace, Purpose::Demo, false)?;
     for target in targets {
         eprintln!("xtask: fuzzing {target} for {} minutes", arguments.minutes);
+        seed(workspace.root(), &target)?;
         // Whatever toolchain runs this program must not be forced upon the nightly cargo.
         run_command(
             workspace
@@ -53,16 +56,48 @@ pub fn run(workspace: &Workspace, arguments: &FuzzArgs) -> Result<()> {
 
 /// The names of all targets, sorted.
 fn targets(root: &Path) -> Result<Vec<String>> {
-    let folder = root.join("fuzz/fuzz_targets");
-    let mut names = Vec::new();
-    for entry in std::fs::read_dir(&folder).with_context(|| format!("list {}", folder.display()))? {
+    let sources = files_with_extension(&root.join("fuzz/fuzz_targets"), "rs")?;
+    Ok(sources.iter().filter_map(|path| Some(path.file_stem()?.to_string_lossy().into_owned())).collect())
+}
+
+/// Starts a target's corpus with what the project ships: sound input is the best to mutate.
+fn seed(root: &Path, target: &str) -> Result<()> {
+    let corpus = root.join("fuzz/corpus").join(target);
+    fs::create_dir_all(&corpus).with_context(|| format!("create {}", corpus.display()))?;
+    let shipped = match target {
+        "pack" | "manifest" => files_with_extension(&root.join("assets"), "safetensors")?,
+        "script" => files_with_extension(&root.join("assets/scripts"), "ron")?,
+        _ => Vec::new(),
+    };
+    for path in shipped {
+        let mut bytes = fs::read(&path).with_context(|| format!("read {}", path.display()))?;
+        if target == "manifest" {
+            bytes = manifest_of(&bytes).with_context(|| format!("{} is no pack", path.display()))?;
+        }
+        let seed = corpus.join(path.file_name().unwrap_or_default());
+        fs::write(&seed, bytes).with_context(|| format!("write {}", seed.display()))?;
+    }
+    Ok(())
+}
+
+/// The manifest inside a pack: a safetensors file opens with the length of its JSON header, eight bytes.
+fn manifest_of(pack: &[u8]) -> Option<Vec<u8>> {
+    let (length, rest) = pack.split_first_chunk()?;
+    let length = usize::try_from(u64::from_le_bytes(*length)).ok()?;
+    let header: Value = serde_json::from_slice(rest.get(..length)?).ok()?;
+    Some(header["__metadata__"]["policy_space"].as_str()?.as_bytes().to_vec())
+}
+
+fn files_with_extension(folder: &Path, wanted: &str) -> Result<Vec<PathBuf>> {
+    let mut paths = Vec::new();
+    for entry in fs::read_dir(folder).with_context(|| format!("list {}", folder.display()))? {
         let path = entry?.path();
-        if path.extension().is_some_and(|extension| extension == "rs") {
-            names.extend(path.file_stem().map(|stem| stem.to_string_lossy().into_owned()));
+        if path.extension().is_some_and(|extension| extension == wanted) {
+            paths.push(path);
         }
     }
-    names.sort();
-    Ok(names)
+    paths.sort();
+    Ok(paths)
 }
 
 fn chosen(targets: &[String], asked: Option<&str>) -> Result<Vec<String>> {
@@ -82,11 +117,21 @@ mod tests {
     fn targets_are_the_sources_of_the_folder() {
         let folder = ScratchFolder::new("fuzz");
         let sources = folder.path().join("fuzz/fuzz_targets");
-        std::fs::create_dir_all(&sources).unwrap();
+        fs::create_dir_all(&sources).unwrap();
         for name in ["script.rs", "pack.rs", "notes.md"] {
-            std::fs::write(sources.join(name), "").unwrap();
+            fs::write(sources.join(name), "").unwrap();
         }
         assert_eq!(targets(folder.path()).unwrap(), ["pack", "script"]);
+    }
+
+    #[test]
+    fn the_manifest_is_cut_out_of_a_pack() {
+        let header = r#"{"__metadata__":{"policy_space":"{\"version\":1}"}}"#;
+        let pack = [&(header.len() as u64).to_le_bytes()[..], header.as_bytes(), &[0; 8]].concat();
+        assert_eq!(manifest_of(&pack).unwrap(), br#"{"version":1}"#);
+        assert!(manifest_of(&pack[..20]).is_none());
+        assert!(manifest_of(&[]).is_none());
+        assert!(manifest_of(&[255; 16]).is_none());
     }
 
     #[test]
