@@ -10,7 +10,15 @@
 //! # Ok::<(), gamepad::ScriptError>(())
 //! ```
 
+pub mod calibration;
+pub mod descriptor;
+mod input;
+pub mod pads;
 mod script;
+mod session;
 
+pub use input::{Battery, Motion, PadInput, PadReport, Power, ReportError, Touch, Update};
+pub use pads::{Bus, NoGamepad, PadId};
 pub use policy_core::{Button, Buttons, GamepadState};
 pub use script::{MAX_SCRIPT_BYTES, MAX_SCRIPT_ENTRIES, MAX_SCRIPT_SECS, Script, ScriptError, TAP_SECS};
+pub use session::{CALIBRATION_SECS, PadSession, SILENCE_SECS};

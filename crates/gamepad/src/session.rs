@@ -1,0 +1,195 @@
+//! One pad over time: its parser, its calibration, and what it counts as while it is silent or gone.
+//!
+//! Pure: reports and times in, [`PadReport`] out; the same reports at the same times give the same states.
+
+use crate::calibration::{Calibration, DeadZones, NotAtRest, RestCalibrator};
+use crate::pads::{Model, PadId, Parser};
+use crate::{GamepadState, NoGamepad, PadInput, PadReport, ReportError, Update};
+
+/// How long a pad that reports all the time may be silent before it counts as gone, in seconds.
+pub const SILENCE_SECS: f64 = 0.25;
+/// How long a pad is watched after connecting to find where it rests, in seconds.
+pub const CALIBRATION_SECS: f64 = 0.5;
+/// So many reports in a row, no further apart than [`STREAM_GAP_SECS`] and none bringing a change, show that a pad
+/// reports all the time.
+const STREAM_REPORTS: u32 = 50;
+const STREAM_GAP_SECS: f64 = 0.05;
+
+/// Where a session's raw states come from.
+#[derive(Clone, Debug)]
+enum Source {
+    Reports(Parser),
+    States,
+}
+
+/// One connected pad.
+#[derive(Clone, Debug)]
+pub struct PadSession {
+    source: Source,
+    streams: bool,
+    unchanged: u32,
+    input: PadInput,
+    present: bool,
+    last_secs: f64,
+    /// As asked for; those of the calibration may be wider.
+    zones: DeadZones,
+    calibration: Calibration,
+    measuring: Option<(f64, RestCalibrator)>,
+    outcome: Option<Result<(), NotAtRest>>,
+    refused: u64,
+    accepted: u64,
+}
+
+impl PadSession {
+    /// A session for a pad that sends HID reports, from its ids and report descriptor.
+    ///
+    /// # Errors
+    /// [`NoGamepad`] when the pad is not known and its descriptor describes none.
+    pub fn new(id: PadId, descriptor: &[u8]) -> Result<Self, NoGamepad> {
+        let streams = Model::of(id).is_some_and(Model::streams);
+        Ok(Self::with_source(Source::Reports(Parser::new(id, descriptor)?), streams))
+    }
+
+    /// A session for a pad whose raw states another library reads.
+    #[must_use]
+    pub fn of_states() -> Self {
+        Self::with_source(Source::States, false)
+    }
+
+    fn with_source(source: Source, streams: bool) -> Self {
+        Self {
+            source,
+            streams,
+            unchanged: 0,
+            input: PadInput::default(),
+            present: false,
+            last_secs: f64::NEG_INFINITY,
+            zones: DeadZones::default(),
+            calibration: Calibration::default(),
+            measuring: None,
+            outcome: None,
+            refused: 0,
+            accepted: 0,
+        }
+    }
+
+    /// Takes one input report that came at `time_secs`. Does not allocate.
+    ///
+    /// # Errors
+    /// [`ReportError`] for a report that is refused; the state is as before.
+    pub fn accept(&mut self, report: &[u8], time_secs: f64) -> Result<Update, ReportError> {
+        let Source::Reports(parser) = &mut self.source else {
+            return Ok(Update::Nothing);
+        };
+        let before = self.input.raw;
+        match parser.parse_into(report, &mut self.input) {
+            Ok(Update::Absent) => {
+                self.disconnect();
+                Ok(Update::Absent)
+            }
+            Ok(update) => {
+                self.observe(before, update, time_secs);
+                Ok(update)
+            }
+            Err(error) => {
+                self.refused += 1;
+                Err(error)
+            }
+        }
+    }
+
+    /// Takes one raw state that came at `time_secs`.
+    pub fn accept_state(&mut self, raw: GamepadState, time_secs: f64) {
+        let before = std::mem::replace(&mut self.input.raw, raw);
+        self.observe(before, Update::Controls, time_secs);
+    }
+
+    /// Takes a feature report that the start-up asked for.
+    pub fn accept_feature(&mut self, report: &[u8]) {
+        if let Source::Reports(parser) = &mut self.source {
+            parser.accept_feature(report);
+        }
+    }
+
+    /// The pad was pulled out: neutral at once, until the next report.
+    pub fn disconnect(&mut self) {
+        self.input = PadInput::default();
+        self.present = false;
+        self.measuring = None;
+    }
+
+    /// The pad at `time_secs`: neutral while it is gone or silent.
+    #[must_use]
+    pub fn report_at(&self, time_secs: f64) -> PadReport {
+        if !self.is_present_at(time_secs) {
+            return PadReport::default();
+        }
+        PadReport { state: self.calibration.state(&self.input.raw), input: self.input }
+    }
+
+    /// True unless the pad is gone, or silent although it used to report all the time.
+    #[must_use]
+    pub fn is_present_at(&self, time_secs: f64) -> bool {
+        let silent = self.streams && time_secs - self.last_secs > SILENCE_SECS;
+        self.present && !silent
+    }
+
+    /// Starts to measure where the pad rests, as after connecting; takes [`CALIBRATION_SECS`].
+    pub fn calibrate(&mut self, time_secs: f64) {
+        self.measuring = Some((time_secs, RestCalibrator::default()));
+    }
+
+    /// Rest positions and dead zones in use.
+    #[must_use]
+    pub fn calibration(&self) -> &Calibration {
+        &self.calibration
+    }
+
+    /// Sets rest positions and dead zones, and ends a measurement.
+    pub fn set_calibration(&mut self, calibration: Calibration) {
+        self.zones = calibration.zones;
+        self.calibration = calibration;
+        self.measuring = None;
+    }
+
+    /// How the last measurement ended; `None` before the first one has.
+    #[must_use]
+    pub fn calibration_outcome(&self) -> Option<Result<(), NotAtRest>> {
+        self.outcome
+    }
+
+    /// Number of reports taken and refused.
+    #[must_use]
+    pub fn counts(&self) -> (u64, u64) {
+        (self.accepted, self.refused)
+    }
+
+    fn observe(&mut self, before: GamepadState, update: Update, time_secs: f64) {
+        self.accepted += 1;
+        if update == Update::Controls {
+            if !self.present {
+                self.calibrate(time_secs);
+            }
+            self.present = true;
+            self.measure(time_secs);
+        }
+        let steady = before == self.input.raw && time_secs - self.last_secs <= STREAM_GAP_SECS;
+        self.unchanged = if steady { self.unchanged.saturating_add(1) } else { 0 };
+        self.streams |= self.unchanged >= STREAM_REPORTS && matches!(self.source, Source::Reports(_));
+        self.last_secs = time_secs;
+    }
+
+    fn measure(&mut self, time_secs: f64) {
+        let Some((start_secs, calibrator)) = &mut self.measuring else { return };
+        calibrator.observe(&self.input.raw);
+        if time_secs - *start_secs < CALIBRATION_SECS {
+            return;
+        }
+        let outcome = calibrator.finish(self.zones);
+        if let Ok(calibration) = outcome {
+            self.calibration = calibration;
+        }
+        self.outcome = Some(outcome.map(|_| ()));
+        self.measuring = None;
+    }
+}
