@@ -57,11 +57,12 @@ impl CharacterPack {
             .map(|p| Node { name: p.name.clone(), fall_height: p.fall_height, speed_mps: p.speed_mps })
             .collect();
         let names: Vec<&str> = nodes.iter().map(|n| n.name.as_str()).collect();
+        check_names("policy", names.iter().copied())?;
+        check_names("skill", manifest.skills.iter().map(|s| s.name.as_str()))?;
         let edges = manifest.edges.iter().map(|e| edge(e, &names)).collect::<Result<Vec<_>, _>>()?;
         let paths = manifest.paths.iter().map(|p| path(p, &names)).collect::<Result<Vec<_>, _>>()?;
         let skills =
             manifest.skills.iter().map(|s| skill(s, &names, &manifest)).collect::<Result<Vec<_>, _>>()?;
-        check_names("skill", manifest.skills.iter().map(|s| s.name.as_str()))?;
         let recovery = match &manifest.recovery {
             None => None,
             Some(name) => {

@@ -1,0 +1,118 @@
+//! Made-up policies and a made-up pack, so that no test needs trained ones.
+#![allow(dead_code, reason = "each test file uses its part")]
+
+use policy_core::{
+    BODY_NAMES, CharacterPack, DISCRIMINATOR_INPUT_LEN, DISCRIMINATOR_LAYOUT, DOF_COUNT, DiscriminatorEntry,
+    EdgeEntry, EndCondition, FRAME_LEN, JOINT_NAMES, Layer, Manifest, Mlp, Normaliser, OBSERVATION_LAYOUT,
+    OBSERVATION_LEN, PACK_FORMAT, PACK_VERSION, POLICY_INPUT_LEN, PackTensors, PathEntry, PolicyEntry,
+    SkillEntry,
+};
+
+pub const POLICY_SIZES: [usize; 4] = [POLICY_INPUT_LEN, 128, 32, DOF_COUNT];
+
+/// A small generator that gives the same numbers everywhere.
+pub struct Noise(pub u32);
+
+impl Noise {
+    /// In [-1, 1).
+    pub fn number(&mut self) -> f32 {
+        self.0 = self.0.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
+        (self.0 >> 8) as f32 / (1 << 23) as f32 - 1.0
+    }
+
+    pub fn numbers(&mut self, count: usize, scale: f32) -> Vec<f32> {
+        (0..count).map(|_| self.number() * scale).collect()
+    }
+}
+
+pub fn mlp(sizes: &[usize], seed: u32) -> Mlp {
+    let mut noise = Noise(seed);
+    let layers = sizes.windows(2).map(|w| {
+        let (weight, bias) = (noise.numbers(w[0] * w[1], 0.1), noise.numbers(w[1], 0.1));
+        Layer::from_input_major(w[0], w[1], &weight, &bias).unwrap()
+    });
+    Mlp::from_layers(layers.collect()).unwrap()
+}
+
+pub const NODES: [&str; 7] = ["idle", "walk", "jog", "run", "crouch", "crawl", "roll"];
+
+pub fn manifest() -> Manifest {
+    let policy = |name: &str| PolicyEntry {
+        name: name.into(),
+        layers: POLICY_SIZES.into(),
+        fall_height: (!["crawl", "roll"].contains(&name)).then_some(0.5),
+        speed_mps: None,
+        origin: "made up".into(),
+    };
+    let edge = |a: &str, b: &str| EdgeEntry { nodes: [a.into(), b.into()], seconds: 0.5 };
+    let path = |name: &str, nodes: &[&str]| PathEntry {
+        name: name.into(),
+        nodes: nodes.iter().map(|n| (*n).into()).collect(),
+    };
+    let end =
+        EndCondition { threshold: 0.5, hysteresis: 0.1, ticks: 5, minimum_seconds: 0.2, limit_seconds: 3.0 };
+    let skill = |name: &str, entry: &[&str]| SkillEntry {
+        name: name.into(),
+        policy: "roll".into(),
+        entry: entry.iter().map(|n| (*n).into()).collect(),
+        returns_to: "walk".into(),
+        discriminator: Some("walk".into()),
+        end,
+    };
+    Manifest {
+        format: PACK_FORMAT.into(),
+        version: PACK_VERSION,
+        character: "made up".into(),
+        control_hz: 30.0,
+        observation: OBSERVATION_LAYOUT.into(),
+        discriminator: DISCRIMINATOR_LAYOUT.into(),
+        bodies: BODY_NAMES.map(Into::into).into(),
+        joints: JOINT_NAMES.map(Into::into).into(),
+        action_centre: vec![0.0; DOF_COUNT],
+        action_gain: vec![1.0; DOF_COUNT],
+        policies: NODES.map(policy).into(),
+        edges: vec![
+            edge("idle", "walk"),
+            edge("jog", "walk"),
+            edge("jog", "run"),
+            edge("crouch", "walk"),
+            edge("crouch", "crawl"),
+        ],
+        paths: vec![
+            path("speed", &["idle", "walk", "jog", "run"]),
+            path("stance", &["idle", "walk", "crouch", "crawl"]),
+        ],
+        discriminators: vec![DiscriminatorEntry {
+            name: "walk".into(),
+            layers: vec![DISCRIMINATOR_INPUT_LEN, 8, 1],
+        }],
+        skills: vec![skill("roll", &["walk", "jog"]), skill("get_up", &[])],
+        recovery: Some("get_up".into()),
+    }
+}
+
+/// A normaliser that changes nothing but clips.
+pub fn normaliser(len: usize) -> Normaliser {
+    Normaliser::from_mean_and_deviation(&vec![0.0; len], &vec![1.0; len]).unwrap()
+}
+
+/// Tensors of [`manifest`]; the discriminator always gives `logit`.
+pub fn tensors(logit: f32) -> PackTensors {
+    let hidden = Layer::from_input_major(
+        DISCRIMINATOR_INPUT_LEN,
+        8,
+        &vec![0.0; DISCRIMINATOR_INPUT_LEN * 8],
+        &[0.0; 8],
+    );
+    let output = Layer::from_input_major(8, 1, &[0.0; 8], &[logit]);
+    PackTensors {
+        policies: (0..NODES.len() as u32).map(|i| mlp(&POLICY_SIZES, i + 1)).collect(),
+        discriminators: vec![Mlp::from_layers(vec![hidden.unwrap(), output.unwrap()]).unwrap()],
+        observation_normaliser: normaliser(OBSERVATION_LEN),
+        discriminator_normaliser: normaliser(FRAME_LEN),
+    }
+}
+
+pub fn pack(logit: f32) -> CharacterPack {
+    CharacterPack::from_parts(manifest(), tensors(logit)).unwrap()
+}

@@ -1,0 +1,217 @@
+//! Whole control ticks: commands, skills, falls and bad states.
+
+mod common;
+
+use std::sync::Arc;
+
+use glam::{Quat, Vec2, Vec3};
+use policy_core::{
+    Bindings, Blend, BlendMode, Button, Buttons, CharacterPack, CharacterState, Command, CommandMapper,
+    Controller, ControllerConfig, GamepadState, Goal, GraphPosition, Heading, SkillEnd,
+};
+use proptest::prelude::*;
+
+const DT: f32 = 1.0 / 30.0;
+
+fn standing() -> CharacterState {
+    let mut state = CharacterState::default();
+    state.bodies.iter_mut().for_each(|b| b.position.z = 0.9);
+    state
+}
+
+fn controller(logit: f32, start: &str) -> Controller {
+    let pack: CharacterPack = common::pack(logit);
+    let start = pack.graph().node_named(start).unwrap();
+    Controller::with_config(Arc::new(pack), ControllerConfig { start, ..ControllerConfig::default() })
+}
+
+fn skill(controller: &Controller, name: &str) -> usize {
+    controller.pack().skill_named(name).unwrap()
+}
+
+#[test]
+fn it_travels_to_the_goal_at_a_limited_rate() {
+    let mut controller = controller(0.0, "idle");
+    let command = Command { goal: Goal::Path { path: 0, coordinate: 2.5 }, ..Command::default() };
+    for tick in 1..=60 {
+        controller.tick(&standing(), &command, DT);
+        let coordinate =
+            controller.pack().graph().paths()[0].coordinate(controller.report().position).unwrap();
+        assert!((coordinate - (tick as f32 * DT / 0.5).min(2.5)).abs() < 1e-4, "{tick}: {coordinate}");
+    }
+    assert_eq!(controller.report().blend.terms().len(), 2);
+}
+
+#[test]
+fn the_joint_targets_are_those_of_the_blended_policy() {
+    let mut controller = controller(0.0, "walk");
+    let command = Command { target: Some(Vec2::new(3.0, 0.0)), ..Command::default() };
+    let targets = *controller.tick(&standing(), &command, DT);
+    let mut action = [0.0; 28];
+    let walk = &controller.pack().policies()[controller.pack().graph().node_named("walk").unwrap()];
+    let mut scratch = policy_core::MlpScratch::for_mlp(walk);
+    let input = controller.policy_input();
+    assert_eq!(input[223..], [1.5, 0.0]);
+    walk.evaluate_into(policy_core::Arithmetic::Reproducible, input, &mut scratch, &mut action);
+    assert_eq!(targets.0, action, "centres are zero and gains one");
+    assert!(action.iter().any(|a| *a != 0.0));
+}
+
+#[test]
+fn a_recognised_skill_returns_and_an_unrecognised_one_runs_to_its_limit() {
+    for (logit, end, least) in [(4.0, SkillEnd::Recognised, 0.2), (-4.0, SkillEnd::TimeLimit, 3.0)] {
+        let mut controller = controller(logit, "walk");
+        let roll = skill(&controller, "roll");
+        controller.tick(&standing(), &Command { skill: Some(roll), ..Command::default() }, DT);
+        assert_eq!(controller.report().skill_started, Some(roll));
+        assert_eq!(controller.report().blend, Blend::single(6));
+        let mut seconds = DT;
+        while controller.report().skill_ended.is_none() {
+            controller.tick(&standing(), &Command::default(), DT);
+            seconds += DT;
+            assert!(seconds < 4.0);
+        }
+        assert_eq!(controller.report().skill_ended, Some((roll, end)));
+        assert!(seconds > least && (end == SkillEnd::TimeLimit || seconds < 1.0), "{seconds}");
+        assert_eq!(controller.report().position, GraphPosition::node(1));
+    }
+}
+
+#[test]
+fn a_skill_waits_until_the_graph_position_allows_it() {
+    let mut controller = controller(0.0, "idle");
+    let roll = skill(&controller, "roll");
+    controller.tick(&standing(), &Command { skill: Some(roll), ..Command::default() }, DT);
+    assert_eq!((controller.report().skill, controller.report().pending_skill), (None, Some(roll)));
+    let ticks = (0..60).find(|_| {
+        controller.tick(&standing(), &Command { goal: Goal::Node(0), ..Command::default() }, DT);
+        controller.report().skill.is_some()
+    });
+    assert!(ticks.is_some_and(|t| (4..=16).contains(&t)), "{ticks:?}");
+}
+
+#[test]
+fn a_fall_starts_the_recovery_and_lying_on_repeats_it() {
+    let mut controller = controller(-4.0, "walk");
+    let get_up = skill(&controller, "get_up");
+    let mut lying = standing();
+    lying.bodies[0].position.z = 0.2;
+    let mut started = Vec::new();
+    for tick in 0..200 {
+        controller.tick(&lying, &Command::default(), DT);
+        if controller.report().skill_started == Some(get_up) {
+            started.push(tick);
+        }
+    }
+    assert_eq!(started.len(), 3, "{started:?}");
+    assert!((8..=10).contains(&started[0]) && (88..=92).contains(&(started[1] - started[0])), "{started:?}");
+}
+
+#[test]
+fn low_is_no_fall_where_the_policy_is_low_and_none_without_recovery() {
+    let mut lying = standing();
+    lying.bodies[0].position.z = 0.3;
+    let mut crawling = controller(0.0, "crawl");
+    for _ in 0..60 {
+        crawling.tick(&lying, &Command::default(), DT);
+    }
+    assert!(!crawling.report().fallen && crawling.report().skill.is_none());
+    let config = ControllerConfig { recover: false, ..ControllerConfig::default() };
+    let mut walking = Controller::with_config(Arc::new(common::pack(0.0)), config);
+    for _ in 0..60 {
+        walking.tick(&lying, &Command::default(), DT);
+    }
+    assert!(walking.report().fallen && walking.report().skill.is_none());
+}
+
+#[test]
+fn a_state_that_is_not_finite_gives_a_safe_action_and_a_flag() {
+    let mut controller = controller(0.0, "walk");
+    controller.tick(&standing(), &Command::default(), DT);
+    let mut bad = standing();
+    bad.joint_velocities[4] = f32::INFINITY;
+    assert_eq!(controller.tick(&bad, &Command::default(), DT).0, [0.0; 28]);
+    assert!(controller.report().non_finite);
+    controller.tick(&standing(), &Command::default(), DT);
+    assert!(!controller.report().non_finite);
+}
+
+#[test]
+fn manual_blends_replace_the_graph_and_bad_ones_do_not() {
+    let mut controller = controller(0.0, "walk");
+    let mut tick = |blend| {
+        controller.tick(&standing(), &Command { blend: Some(blend), ..Command::default() }, DT);
+        controller.report().blend
+    };
+    let manual = Blend::between_per_layer(0, 3, [0.2, 0.5, 0.9, 0.0]);
+    assert_eq!(tick(manual), manual);
+    let walk = Blend::single(1);
+    for bad in [Blend::single(99), Blend::between(0, 1, f32::NAN), Blend::default()] {
+        assert_eq!(tick(bad), walk);
+    }
+}
+
+#[test]
+fn a_pad_becomes_a_command() {
+    let pack = common::pack(0.0);
+    let mut mapper = CommandMapper::new(&pack, &Bindings::default());
+    let state = standing();
+    let mut map = |pad: GamepadState, camera| mapper.map(&pad, camera, &state);
+    let neutral = map(GamepadState::default(), Heading::FORWARD);
+    assert_eq!((neutral.target, neutral.goal), (None, Goal::Path { path: 0, coordinate: 0.0 }));
+
+    let pad = GamepadState { left_stick: [0.0, 1.0], right_trigger: 0.5, ..GamepadState::default() };
+    let command = map(pad, Heading::from_angle(std::f32::consts::FRAC_PI_2));
+    assert!((command.target.unwrap() - Vec2::new(0.0, 5.0)).length() < 1e-5, "up is where the camera looks");
+    assert_eq!(command.goal, Goal::Path { path: 0, coordinate: 2.0 });
+
+    let right = map(GamepadState { left_stick: [0.5, 0.0], ..pad }, Heading::FORWARD).target.unwrap();
+    assert!((right - Vec2::new(0.0, -2.5)).length() < 1e-5, "right of x is minus y");
+
+    let both = map(GamepadState { left_trigger: 0.75, ..pad }, Heading::FORWARD);
+    assert_eq!(both.goal, Goal::Path { path: 1, coordinate: 2.5 });
+
+    let roll = pack.skill_named("roll");
+    let held = GamepadState { buttons: Buttons::NONE.with(Button::East), ..pad };
+    assert_eq!([map(held, Heading::FORWARD).skill, map(held, Heading::FORWARD).skill], [roll, None]);
+    let broken = GamepadState { left_stick: [f32::NAN, f32::INFINITY], ..GamepadState::default() };
+    assert_eq!(map(broken, Heading::FORWARD).target, None);
+}
+
+fn any_number() -> impl Strategy<Value = f32> {
+    prop_oneof![6 => -3.0f32..3.0, 1 => any::<f32>(), 1 => Just(f32::NAN), 1 => Just(f32::MAX)]
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(200))]
+
+    #[test]
+    fn no_state_and_no_command_panics_or_gives_targets_that_are_not_finite(
+        numbers in prop::collection::vec(any_number(), 32),
+        goals in prop::collection::vec((0usize..4, 0usize..70, any_number(), 0usize..5), 6),
+    ) {
+        let mut controller = controller(0.5, "walk");
+        for (kind, index, number, mode) in goals {
+            let mut state = standing();
+            let v = |i: usize| Vec3::new(numbers[i % 32], numbers[(i + 5) % 32], numbers[(i + 11) % 32]);
+            state.bodies[index % 15].position = v(index);
+            state.bodies[(index + 3) % 15].linear_velocity = v(index + 1);
+            state.bodies[0].rotation = Quat::from_xyzw(numbers[2], numbers[3], numbers[4], numbers[5]);
+            state.ground_height = numbers[index % 32];
+            let goal = match kind {
+                0 => Goal::Stay,
+                1 => Goal::Node(index),
+                _ => Goal::Path { path: index % 3, coordinate: number },
+            };
+            let command = Command {
+                target: Some(Vec2::new(number, numbers[index % 32])),
+                goal,
+                skill: Some(index % 4),
+                blend: (kind == 3).then(|| Blend::between(index % 9, 1, number)),
+                mode: BlendMode::ALL[mode % 3],
+            };
+            let targets = controller.tick(&state, &command, number);
+            prop_assert!(targets.0.iter().all(|t| t.is_finite()), "{:?}", controller.report());
+        }
+    }
+}

@@ -1,0 +1,126 @@
+//! Packs: what is written is read again, and nothing bad is.
+
+mod common;
+
+use common::{manifest, pack, tensors};
+use policy_core::{CharacterPack, Manifest, PackError, PackTensors};
+use proptest::prelude::*;
+
+fn refused(change: impl FnOnce(&mut Manifest, &mut PackTensors)) -> String {
+    let (mut m, mut t) = (manifest(), tensors(0.0));
+    change(&mut m, &mut t);
+    CharacterPack::from_parts(m, t).expect_err("the pack is bad").to_string()
+}
+
+#[test]
+fn a_pack_survives_its_bytes() {
+    let first = pack(1.0);
+    let bytes = first.to_bytes();
+    let second = CharacterPack::from_bytes(&bytes).unwrap();
+    assert_eq!(first.manifest(), second.manifest());
+    assert_eq!(first.tensors(), second.tensors());
+    assert_eq!(bytes, second.to_bytes(), "the same pack gives the same bytes");
+}
+
+#[test]
+fn messages_name_field_expected_and_found() {
+    let says = |message: String, parts: &[&str]| {
+        assert!(parts.iter().all(|p| message.contains(p)), "{message}");
+    };
+    says(refused(|m, _| m.version = 2), &["version", "1", "2"]);
+    says(refused(|m, _| m.format = "x".into()), &["format", "policy-space character pack", "x"]);
+    says(refused(|m, _| m.bodies.swap(0, 1)), &["bodies", "pelvis torso", "torso pelvis"]);
+    says(refused(|m, _| m.policies[1].name = "idle".into()), &["policy name", "unique", "idle"]);
+    says(refused(|m, _| m.skills[1].name = "roll".into()), &["skill name", "roll"]);
+    says(refused(|m, _| m.paths[0].nodes[2] = "gallop".into()), &["path \"speed\"", "gallop"]);
+    says(refused(|m, _| m.paths[0].nodes.swap(0, 2)), &["path \"speed\"", "edges"]);
+    says(refused(|m, _| m.edges[0].nodes[1] = "gallop".into()), &["edges", "gallop"]);
+    says(refused(|m, _| m.edges[0].seconds = 0.0), &["edge 0", "above 0"]);
+    says(refused(|m, _| m.edges[0].seconds = f32::NAN), &["edge 0"]);
+    says(refused(|m, _| m.edges[0].nodes[1] = "idle".into()), &["edge 0", "different"]);
+    says(refused(|m, _| m.skills[0].end.threshold = 1.5), &["threshold", "skill \"roll\"", "0 to 1", "1.5"]);
+    says(refused(|m, _| m.skills[0].end.ticks = 0), &["ticks", "1 to"]);
+    says(refused(|m, _| m.skills[0].discriminator = Some("jog".into())), &["discriminator", "jog"]);
+    says(refused(|m, _| m.skills[0].returns_to = "jgo".into()), &["policy", "jgo"]);
+    says(refused(|m, _| m.recovery = Some("fly".into())), &["recovery", "fly"]);
+    says(refused(|m, _| m.control_hz = f32::NAN), &["control_hz", "1 to 1000", "NaN"]);
+    says(refused(|m, _| m.action_gain[3] = -1.0), &["joint 3", "positive", "-1"]);
+    says(refused(|m, _| m.action_gain.truncate(5)), &["28 action_gain", "5"]);
+    says(refused(|m, _| m.policies[2].fall_height = Some(-1.0)), &["fall_height", "jog", "-1"]);
+    says(refused(|_, t| drop(t.policies.pop())), &["7 policies", "6"]);
+    says(refused(|_, t| t.policies[3] = common::mlp(&[225, 64, 32, 28], 1)), &["run", "[225, 64, 32, 28]"]);
+    says(refused(|_, t| t.discriminators[0] = common::mlp(&[625, 8, 2], 1)), &["walk", "625 .. 1"]);
+    says(refused(|_, t| t.observation_normaliser = common::normaliser(5)), &["223", "5"]);
+    says(refused(|m, t| (m.policies.clear(), t.policies.clear()).1), &["1 to 64", "0"]);
+}
+
+/// Bytes of a pack with its header's text changed; the header's length stays as it was.
+fn with_header(change: impl Fn(String) -> String) -> Vec<u8> {
+    let bytes = pack(0.0).to_bytes();
+    let length = u64::from_le_bytes(bytes[..8].try_into().unwrap()) as usize;
+    let header = change(String::from_utf8(bytes[8..8 + length].to_vec()).unwrap());
+    let mut out = (header.len() as u64).to_le_bytes().to_vec();
+    out.extend(header.as_bytes());
+    out.extend(&bytes[8 + length..]);
+    out
+}
+
+fn message(bytes: &[u8]) -> String {
+    CharacterPack::from_bytes(bytes).expect_err("the pack is bad").to_string()
+}
+
+#[test]
+fn bad_files_are_refused() {
+    let bytes = pack(0.0).to_bytes();
+    for length in [0, 7, 8, 100, bytes.len() / 2, bytes.len() - 1] {
+        assert!(
+            matches!(CharacterPack::from_bytes(&bytes[..length]), Err(PackError::Container { .. })),
+            "{length}"
+        );
+    }
+    assert!(message(&with_header(|h| h.replace("policy_space", "policy_spice"))).contains("policy_space"));
+    assert!(
+        message(&with_header(|h| h.replace("\\\"recovery\\\"", "\\\"recovary\\\""))).contains("recovary")
+    );
+    let renamed = with_header(|h| h.replace("policy.run.layer1.bias", "policy.ran.layer1.bias"));
+    assert!(message(&renamed).contains("policy.run.layer1.bias"));
+    let shape = with_header(|h| h.replacen("\"shape\":[225,128]", "\"shape\":[128,225]", 1));
+    assert!(message(&shape).contains("[225, 128]"));
+    let same = with_header(|h| h.replace("policy.run.layer1.bias", "policy.jog.layer1.bias"));
+    assert!(CharacterPack::from_bytes(&same).is_err(), "a tensor named twice");
+    let mut nan = bytes.clone();
+    let at = nan.len() - 4;
+    nan[at..].copy_from_slice(&f32::NAN.to_le_bytes());
+    let found = message(&nan);
+    assert!(found.contains("NaN") && found.contains("finite"), "{found}");
+}
+
+#[test]
+fn an_extra_tensor_is_refused() {
+    // The manifest forgets a policy whose tensors stay.
+    let bytes = with_header(|h| {
+        let from = h.find("{\\\"name\\\":\\\"roll\\\",\\\"layers\\\"").unwrap();
+        let to = h[from..].find('}').unwrap() + from + 1;
+        let mut h = h;
+        h.replace_range(from - 1..to, "");
+        h.replace("\\\"policy\\\":\\\"roll\\\"", "\\\"policy\\\":\\\"walk\\\"")
+    });
+    let found = message(&bytes);
+    assert!(found.contains("policy.roll."), "{found}");
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(300))]
+
+    #[test]
+    fn flipped_bits_never_panic(at in 0.0f64..1.0, bit in 0u8..8, in_header in any::<bool>()) {
+        let mut bytes = pack(0.0).to_bytes();
+        let header = u64::from_le_bytes(bytes[..8].try_into().unwrap()) as usize + 8;
+        let range = if in_header { header } else { bytes.len() };
+        bytes[(at * range as f64) as usize] ^= 1 << bit;
+        if let Ok(pack) = CharacterPack::from_bytes(&bytes) {
+            let finite = |m: &policy_core::Mlp| m.layers().iter().all(|l| l.weight().all(f32::is_finite));
+            prop_assert!(pack.policies().iter().all(finite), "what loads is sound");
+        }
+    }
+}
