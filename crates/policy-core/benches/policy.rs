@@ -34,14 +34,14 @@ fn benches(c: &mut Criterion) {
     for (name, arithmetic) in [("evaluate", arithmetic), ("evaluate_fused_multiply_add", Arithmetic::Fused)] {
         c.bench_function(name, |b| {
             b.iter(|| {
-                policies[0].evaluate_into(arithmetic, black_box(&input), &mut scratch, black_box(&mut out))
+                policies[0].evaluate_into(arithmetic, black_box(&input), &mut scratch, black_box(&mut out));
             });
         });
     }
     let blend = Blend::between(0, 1, 0.3);
     c.bench_function("fused", |b| {
         b.iter(|| {
-            blend.evaluate_into(&policies, arithmetic, black_box(&input), &mut scratch, black_box(&mut out))
+            blend.evaluate_into(&policies, arithmetic, black_box(&input), &mut scratch, black_box(&mut out));
         });
     });
     let mut cached = policies[0].clone();
@@ -73,7 +73,7 @@ fn benches(c: &mut Criterion) {
                             &inputs,
                             &mut batch,
                             black_box(&mut outs),
-                        )
+                        );
                     },
                     BatchSize::SmallInput,
                 );

@@ -1,4 +1,48 @@
 //! Steer physics-based characters by blending the parameters of tiny policies.
+//!
+//! Each skill of a character is one small network, a *policy*; policies that were trained towards each other form a
+//! *graph*, and the straight line between the parameters of two neighbours is itself a good policy. A game moves along
+//! that line with an analog trigger. The method is that of *Lightweight Policy-Space Control for Physics-Based
+//! Characters*; this crate is everything of it that a game needs at run time and that is not physics, drawing or
+//! devices.
+//!
+//! ```no_run
+//! use std::sync::Arc;
+//! use policy_core::{CharacterPack, CharacterState, Command, Controller, Goal};
+//!
+//! # fn sense() -> CharacterState { CharacterState::default() }
+//! # fn actuate(_: &policy_core::JointTargets) {}
+//! let bytes = std::fs::read("assets/humanoid.pack.safetensors")?;
+//! let pack = Arc::new(CharacterPack::from_bytes(&bytes)?);
+//! let mut controller = Controller::new(pack);
+//! loop {
+//!     let state: CharacterState = sense(); // from your physics engine
+//!     let command = Command {
+//!         target: Some(glam::Vec2::new(5.0, 0.0)),
+//!         goal: Goal::Path { path: 0, coordinate: 1.5 },
+//!         ..Command::default()
+//!     };
+//!     actuate(controller.tick(&state, &command, 1.0 / 30.0)); // 28 joint targets, radians
+//! }
+//! # #[allow(unreachable_code)] Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+//!
+//! # How the parts hang together
+//! - [`CharacterPack`]: policies, graph, skills, normalisers; immutable, shared by all characters.
+//! - [`Controller`]: the state of one character; [`Controller::tick`] neither allocates nor fails.
+//! - [`CommandMapper`]: from a gamepad to a [`Command`]; or make your own.
+//! - [`Blend`], [`Mlp`], [`evaluate_batch_into`]: the parts, for an engine with its own controller or a crowd.
+//!
+//! # Conventions
+//! SI units, radians, z up, right-handed. Quaternions are glam's (x, y, z, w). *Parameters* are the numbers of a
+//! network; *blend weights* are mixing factors.
+//!
+//! # Features
+//! - `std` (default): run-time detection of the processor's vector units. Without it the crate is `no_std` with
+//!   `alloc`, and uses the units enabled at compile time.
+//!
+//! # Determinism
+//! In [`Arithmetic::Reproducible`], the default, a controller gives the same bits on every machine.
 #![no_std]
 #![forbid(unsafe_code)]
 
