@@ -1,6 +1,15 @@
 //! Trains the policies of the graph: adversarial motion priors and PPO, with every skill pulled towards its parent.
 
+pub mod amp;
+pub mod checkpoint;
+pub mod clip;
+pub mod env;
 pub mod nn;
+pub mod normaliser_file;
+pub mod ppo;
+pub mod recipe;
 mod rng;
+pub mod run;
+pub mod training;
 
 pub use rng::{NoiseTable, Rng};

@@ -13,4 +13,4 @@ pub use adam::{Adam, clip_norm};
 pub use discriminator_loss::{DiscriminatorLoss, DiscriminatorPass, sigmoid, softplus};
 pub use matrix::{Shape, Write, multiply, multiply_left_transposed, multiply_right_transposed};
 pub use network::{LayerRange, Network};
-pub use pass::Pass;
+pub use pass::{Line, Pass};

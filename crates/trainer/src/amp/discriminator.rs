@@ -1,0 +1,169 @@
+//! A discriminator that learns beside the policy, and the style reward it gives.
+
+use policy_core::DISCRIMINATOR_INPUT_LEN;
+use rayon::prelude::*;
+
+use super::config::DiscriminatorConfig;
+use super::replay::Replay;
+use crate::env::Demonstrations;
+use crate::nn::{Adam, DiscriminatorLoss, DiscriminatorPass, Network, sigmoid};
+use crate::ppo::BatchEvaluator;
+use crate::{NoiseTable, Rng};
+
+/// `-ln(max(1 - sigmoid(logit), 1e-4))`: 0 for what is surely simulated, 9.2 for what is surely a demonstration.
+#[must_use]
+pub fn style_reward(logit: f32) -> f32 {
+    -(1.0 - sigmoid(logit)).max(1e-4).ln()
+}
+
+/// Means over the rows of one iteration's gradient steps.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct DiscriminatorReport {
+    /// Cross-entropy of a row.
+    pub cross_entropy: f32,
+    /// Share of rows judged rightly.
+    pub accuracy: f32,
+    /// Squared gradient at a demonstration.
+    pub squared_gradient: f32,
+}
+
+/// One share of a gradient step.
+#[derive(Clone, Debug)]
+struct Lane {
+    pass: DiscriminatorPass,
+    input: Vec<f32>,
+    gradient: Vec<f32>,
+    loss: DiscriminatorLoss,
+}
+
+const LANES: usize = 2;
+
+/// A discriminator, its optimiser, its replay and its buffers.
+#[derive(Clone, Debug)]
+pub struct DiscriminatorLearner {
+    /// Hyper-parameters.
+    pub config: DiscriminatorConfig,
+    /// The network: 625 normalised inputs, one logit.
+    pub network: Network,
+    /// Its optimiser.
+    pub adam: Adam,
+    /// Draws rows and noise.
+    pub rng: Rng,
+    replay: Replay,
+    noise: NoiseTable,
+    lanes: Vec<Lane>,
+    batch: BatchEvaluator,
+}
+
+impl DiscriminatorLearner {
+    /// A learner that starts from `network`, or from random parameters.
+    #[must_use]
+    pub fn new(config: DiscriminatorConfig, network: Option<Network>, seed: u64, stream: u64) -> Self {
+        let mut rng = Rng::new(seed, stream);
+        let network = network.unwrap_or_else(|| {
+            let mut sizes = vec![DISCRIMINATOR_INPUT_LEN];
+            sizes.extend_from_slice(&config.hidden);
+            sizes.push(1);
+            Network::new(&sizes, 1.0, &mut rng)
+        });
+        let rows = config.rows.div_ceil(LANES);
+        let lane = Lane {
+            pass: DiscriminatorPass::new(network.sizes(), rows),
+            input: vec![0.0; 2 * rows * DISCRIMINATOR_INPUT_LEN],
+            gradient: vec![0.0; network.parameters.len()],
+            loss: DiscriminatorLoss::default(),
+        };
+        Self {
+            adam: Adam::new(network.parameters.len()),
+            replay: Replay::new(config.replay),
+            noise: NoiseTable::new(seed),
+            lanes: vec![lane; LANES],
+            batch: BatchEvaluator::new(network.sizes()),
+            config,
+            network,
+            rng,
+        }
+    }
+
+    /// Writes the logit of every row of `inputs`.
+    pub fn logits_into(&mut self, inputs: &[f32], logits: &mut [f32]) {
+        self.batch.evaluate(&self.network, None, inputs, logits);
+    }
+
+    /// Learns to tell `demonstrations` from the rows of `inputs` that `chosen` lists, and from those it remembers.
+    ///
+    /// Does nothing when no row was ever chosen.
+    pub fn update(
+        &mut self,
+        demonstrations: &Demonstrations,
+        inputs: &[f32],
+        chosen: &[u32],
+    ) -> DiscriminatorReport {
+        let row_of = |row: u32| {
+            let at = row as usize * DISCRIMINATOR_INPUT_LEN;
+            &inputs[at..at + DISCRIMINATOR_INPUT_LEN]
+        };
+        if !chosen.is_empty() {
+            for _ in 0..self.config.replay_rows {
+                let row = row_of(chosen[self.rng.index(chosen.len())]);
+                self.replay.push(row.try_into().expect("a row of this length"));
+            }
+        }
+        let mut report = DiscriminatorReport::default();
+        if self.replay.is_empty() {
+            return report;
+        }
+        let per_lane = self.config.rows.div_ceil(LANES);
+        let scale = 1.0 / (per_lane * LANES) as f32;
+        for _ in 0..self.config.updates {
+            for lane in &mut self.lanes {
+                let (real, simulated) = lane.input.split_at_mut(per_lane * DISCRIMINATOR_INPUT_LEN);
+                for row in real.chunks_exact_mut(DISCRIMINATOR_INPUT_LEN) {
+                    demonstrations.sample_into(&mut self.rng, row.try_into().expect("a row of this length"));
+                    self.noise.add(&mut self.rng, self.config.noise, row);
+                }
+                for (i, row) in simulated.chunks_exact_mut(DISCRIMINATOR_INPUT_LEN).enumerate() {
+                    let fresh = i % 2 == 0 && !chosen.is_empty();
+                    let from = if fresh {
+                        row_of(chosen[self.rng.index(chosen.len())])
+                    } else {
+                        self.replay.draw(&mut self.rng)
+                    };
+                    row.copy_from_slice(from);
+                    self.noise.add(&mut self.rng, self.config.noise, row);
+                }
+            }
+            let (network, penalty) = (&self.network, self.config.gradient_penalty);
+            self.lanes.par_iter_mut().for_each(|lane| {
+                lane.gradient.fill(0.0);
+                lane.loss = lane.pass.accumulate(network, &lane.input, penalty, scale, &mut lane.gradient);
+            });
+            let (first, others) = self.lanes.split_first_mut().expect("there are lanes");
+            for lane in others {
+                first.gradient.iter_mut().zip(&lane.gradient).for_each(|(a, b)| *a += b);
+                first.loss.cross_entropy += lane.loss.cross_entropy;
+                first.loss.squared_gradient += lane.loss.squared_gradient;
+                first.loss.right += lane.loss.right;
+            }
+            let config = &self.config;
+            self.adam.step(&mut self.network.parameters, &first.gradient, config.rate, config.decay);
+            let each = f64::from(scale) / self.config.updates as f64;
+            report.cross_entropy += (first.loss.cross_entropy * 0.5 * each) as f32;
+            report.accuracy += (first.loss.right * 0.5 * each) as f32;
+            report.squared_gradient += (first.loss.squared_gradient * each) as f32;
+        }
+        report
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn style_grows_with_the_logit_and_is_bounded() {
+        assert!((style_reward(0.0) - core::f32::consts::LN_2).abs() < 1e-6);
+        assert!(style_reward(-50.0).abs() < 1e-6);
+        assert!((style_reward(50.0) - 9.21034).abs() < 1e-3);
+    }
+}

@@ -1,0 +1,9 @@
+//! Adversarial motion priors (Peng et al. 2021): a thin layer over PPO that judges style.
+
+mod config;
+mod discriminator;
+mod replay;
+
+pub use config::DiscriminatorConfig;
+pub use discriminator::{DiscriminatorLearner, DiscriminatorReport, style_reward};
+pub use replay::Replay;

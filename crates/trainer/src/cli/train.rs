@@ -1,0 +1,106 @@
+//! `trainer train`: one skill, or the whole graph in order.
+
+use std::collections::BTreeMap;
+use std::time::Duration;
+
+use anyhow::{Result, bail};
+use clap::Args;
+use indicatif::{ProgressBar, ProgressStyle};
+use trainer::recipe::Recipe;
+use trainer::run::{Run, Workplace};
+
+/// Arguments of the verb.
+#[derive(Args)]
+pub(crate) struct Arguments {
+    /// Skill whose recipe to run.
+    #[arg(required_unless_present = "all", conflicts_with = "all")]
+    skill: Option<String>,
+    /// Run all recipes, parents before children.
+    #[arg(long)]
+    all: bool,
+    /// Go on from the last checkpoint; finished runs are left alone.
+    #[arg(long)]
+    resume: bool,
+    /// Seed of the random numbers.
+    #[arg(long, default_value_t = 1)]
+    seed: u64,
+    /// Threads; one makes a run repeat itself whatever else the machine does.
+    #[arg(long)]
+    threads: Option<usize>,
+    /// Stop after this many iterations.
+    #[arg(long)]
+    iterations: Option<u64>,
+}
+
+/// Trains.
+pub(crate) fn run(workplace: &Workplace, arguments: &Arguments) -> Result<()> {
+    if let Some(threads) = arguments.threads {
+        rayon::ThreadPoolBuilder::new().num_threads(threads).build_global()?;
+    }
+    let recipes = match &arguments.skill {
+        Some(skill) => vec![workplace.recipe(skill)?],
+        None => in_order(workplace)?,
+    };
+    for recipe in recipes {
+        let mut run = workplace.prepare(recipe, arguments.seed, arguments.resume)?;
+        train(&mut run, arguments.iterations)?;
+    }
+    Ok(())
+}
+
+/// All recipes, parents first.
+fn in_order(workplace: &Workplace) -> Result<Vec<Recipe>> {
+    let mut left = BTreeMap::new();
+    for entry in std::fs::read_dir(&workplace.recipes)? {
+        let path = entry?.path();
+        if path.extension().is_some_and(|e| e == "toml") {
+            let recipe = Recipe::load(&path)?;
+            left.insert(recipe.skill.clone(), recipe);
+        }
+    }
+    let mut ordered: Vec<Recipe> = Vec::new();
+    while !left.is_empty() {
+        let ready = |r: &Recipe| r.parent.as_ref().is_none_or(|p| ordered.iter().any(|o| o.skill == *p));
+        let Some(skill) = left.values().find(|r| ready(r)).map(|r| r.skill.clone()) else {
+            let names: Vec<_> = left.keys().cloned().collect();
+            bail!("expected every parent to have a recipe and no circle, found none for {}", names.join(", "));
+        };
+        ordered.extend(left.remove(&skill));
+    }
+    Ok(ordered)
+}
+
+fn train(run: &mut Run, iterations: Option<u64>) -> Result<()> {
+    let skill = run.training.recipe.skill.clone();
+    let bar = ProgressBar::new(run.training.recipe.total_samples());
+    let style = "{prefix:>8} {wide_bar} {human_pos}/{human_len} {per_sec} {eta} {msg}";
+    bar.set_style(ProgressStyle::with_template(style)?);
+    bar.set_prefix(skill.clone());
+    bar.enable_steady_tick(Duration::from_secs(1));
+    bar.set_position(run.training.samples);
+    bar.reset_eta();
+    let mut done = 0;
+    while !run.is_done() && iterations.is_none_or(|most| done < most) {
+        let report = run.advance()?;
+        done += 1;
+        let p = &report.population;
+        bar.set_position(run.training.samples);
+        bar.set_message(format!(
+            "style {:.2} task {:.2} episode {:.0} kl {:.3} distance {:.2} secs {:.2}+{:.2}+{:.2}",
+            report.style,
+            p.task / p.ticks.max(1) as f64,
+            p.episode_ticks as f64 / f64::from(p.episodes.max(1)),
+            report.update.kl,
+            report.distance,
+            report.secs[0],
+            report.secs[1],
+            report.secs[2],
+        ));
+        if bar.is_hidden() && done % 20 == 0 {
+            println!("{skill} {} {}", run.training.samples, bar.message());
+        }
+    }
+    run.save()?;
+    bar.finish();
+    Ok(())
+}

@@ -1,0 +1,96 @@
+//! Why a clip can't be used.
+
+use std::path::PathBuf;
+
+/// Why a clip can't be read or fitted.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum ClipError {
+    /// No folder of clips was named.
+    #[error(
+        "expected a folder of clips by --motions or the variable {variable}, found neither; DeepMimic's data/motions, \
+         the sources of pybullet (pybullet_data) and IsaacGymEnvs (assets/amp/motions) hold clips that can be read"
+    )]
+    NoFolder {
+        /// The environment variable that may name it.
+        variable: &'static str,
+    },
+    /// A clip of this name isn't in the folder.
+    #[error("expected {clip}.json, .txt or .npy in {}, found none of them", folder.display())]
+    Missing {
+        /// Name of the clip.
+        clip: String,
+        /// Where it was looked for.
+        folder: PathBuf,
+    },
+    /// The file can't be read.
+    #[error("cannot read {}", path.display())]
+    Io {
+        /// The file.
+        path: PathBuf,
+        /// Why.
+        source: std::io::Error,
+    },
+    /// The file is not what its ending says.
+    #[error("clip {clip}: {message}")]
+    Format {
+        /// Name of the clip.
+        clip: String,
+        /// What was expected and found.
+        message: String,
+    },
+    /// Too few or too many frames.
+    #[error("clip {clip}: expected 2 to {max} frames, found {found}", max = super::MAX_FRAMES)]
+    FrameCount {
+        /// Name of the clip.
+        clip: String,
+        /// Its frames.
+        found: usize,
+    },
+    /// Arrays of different length.
+    #[error("clip {clip}: expected {expected} {field}, found {found}")]
+    Lengths {
+        /// Name of the clip.
+        clip: String,
+        /// The array.
+        field: &'static str,
+        /// As many as frames.
+        expected: usize,
+        /// Its length.
+        found: usize,
+    },
+    /// A number is NaN, infinite or out of all bounds.
+    #[error("clip {clip}: expected finite numbers within 10 km, found others in frame {frame}")]
+    NotFinite {
+        /// Name of the clip.
+        clip: String,
+        /// First such frame.
+        frame: usize,
+    },
+    /// Times do not ascend.
+    #[error("clip {clip}: expected ascending times, found frame {frame} no later than the one before")]
+    Times {
+        /// Name of the clip.
+        clip: String,
+        /// First such frame.
+        frame: usize,
+    },
+    /// Longer than ten minutes.
+    #[error("clip {clip}: expected at most 600 seconds, found {found}")]
+    Duration {
+        /// Name of the clip.
+        clip: String,
+        /// Its seconds.
+        found: f32,
+    },
+    /// A quaternion is not of unit length.
+    #[error("clip {clip}: expected unit quaternions, found another length in frame {frame}, body {body}")]
+    Quaternion {
+        /// Name of the clip.
+        clip: String,
+        /// First such frame.
+        frame: usize,
+        /// Index of the body.
+        body: usize,
+    },
+}

@@ -1,0 +1,151 @@
+//! A clip on the joints of the model: generalised positions and velocities at 120 Hz, cycles closed.
+
+use glam::{DQuat, DVec3, Quat};
+use physics_bridge::{Pose, QPOS_LEN, QVEL_LEN};
+use policy_core::DOF_COUNT;
+
+use super::fit::{JointFit, JointLimits};
+use super::{Clip, ClipError};
+
+/// Poses per second of a [`Motion`] (near it: a cycle holds a whole number of them).
+pub const MOTION_HZ: f32 = 120.0;
+
+/// Poses from one control tick to the next.
+pub const TICK_STRIDE: usize = 4;
+
+/// A clip fitted to the joints and resampled.
+#[derive(Clone, Debug)]
+pub struct Motion {
+    /// Name of the clip.
+    pub name: String,
+    /// True when the last pose goes on with the first.
+    pub looping: bool,
+    /// Poses at [`MOTION_HZ`].
+    pub poses: Vec<Pose>,
+    /// How far a cycle moves the pelvis, metres.
+    pub cycle_offset: [f64; 2],
+    /// Seconds between poses.
+    pub dt_secs: f64,
+    /// How far the clip left the joint limits, radians, and where; such angles were clamped.
+    pub outside_limits: (f32, &'static str),
+}
+
+impl Motion {
+    /// Fits and resamples `clip`.
+    ///
+    /// # Errors
+    /// When the clip is shorter than two poses.
+    pub fn fit(clip: &Clip, limits: JointLimits) -> Result<Self, ClipError> {
+        let intervals = (clip.duration() * MOTION_HZ).round() as usize;
+        if intervals < 2 {
+            return Err(ClipError::FrameCount { clip: clip.name.clone(), found: intervals });
+        }
+        let dt = f64::from(clip.duration()) / intervals as f64;
+        let count = if clip.looping { intervals } else { intervals + 1 };
+        let mut fit = JointFit::new(limits);
+        let mut poses: Vec<Pose> = (0..count)
+            .map(|i| {
+                let (position, rotations) = clip.sample((i as f64 * dt) as f32);
+                let angles = fit.angles(&rotations);
+                Pose { qpos: qpos(position.as_dvec3(), rotations[0], &angles), qvel: [0.0; QVEL_LEN] }
+            })
+            .collect();
+        let offset = if clip.looping { clip.cycle_offset().as_dvec3() } else { DVec3::ZERO };
+        for i in 0..count {
+            let (before, after, span) = neighbours(i, count, clip.looping);
+            let mut from = poses[before].qpos;
+            let mut to = poses[after].qpos;
+            shift(&mut from, offset * if before > i { -1.0 } else { 0.0 });
+            shift(&mut to, offset * if after < i { 1.0 } else { 0.0 });
+            poses[i].qvel = velocity(&from, &to, span * dt);
+        }
+        Ok(Self {
+            name: clip.name.clone(),
+            looping: clip.looping,
+            poses,
+            cycle_offset: [offset.x, offset.y],
+            dt_secs: dt,
+            outside_limits: fit.worst(),
+        })
+    }
+
+    /// Index of the pose `ticks` control ticks before pose `index`; stops at the start of a clip that doesn't loop.
+    #[must_use]
+    pub fn earlier(&self, index: usize, ticks: usize) -> usize {
+        let back = ticks * TICK_STRIDE;
+        if self.looping {
+            (index + self.poses.len() * (back / self.poses.len() + 1) - back) % self.poses.len()
+        } else {
+            index.saturating_sub(back)
+        }
+    }
+
+    /// Lifts every pose by `metres`.
+    pub fn lift(&mut self, metres: f64) {
+        self.poses.iter_mut().for_each(|p| p.qpos[2] += metres);
+    }
+
+    /// Mean horizontal speed, metres per second.
+    #[must_use]
+    pub fn mean_speed(&self) -> f32 {
+        let (first, last) = (&self.poses[0].qpos, &self.poses[self.poses.len() - 1].qpos);
+        let steps = (self.poses.len() - 1) as f64;
+        ((last[0] - first[0]).hypot(last[1] - first[1]) / (steps * self.dt_secs)) as f32
+    }
+}
+
+/// `pose` turned about the vertical by `radians` and with the pelvis over `x`, `y`.
+#[must_use]
+pub fn placed(pose: &Pose, x: f64, y: f64, radians: f64) -> Pose {
+    let mut placed = *pose;
+    (placed.qpos[0], placed.qpos[1]) = (x, y);
+    let turn = DQuat::from_rotation_z(radians);
+    let q = turn * DQuat::from_xyzw(pose.qpos[4], pose.qpos[5], pose.qpos[6], pose.qpos[3]);
+    placed.qpos[3..7].copy_from_slice(&[q.w, q.x, q.y, q.z]);
+    let v = turn * DVec3::new(pose.qvel[0], pose.qvel[1], pose.qvel[2]);
+    placed.qvel[..3].copy_from_slice(&v.to_array());
+    placed
+}
+
+fn qpos(position: DVec3, rotation: Quat, angles: &[f32; DOF_COUNT]) -> [f64; QPOS_LEN] {
+    let mut qpos = [0.0; QPOS_LEN];
+    qpos[..3].copy_from_slice(&position.to_array());
+    let q = rotation.as_dquat().normalize();
+    qpos[3..7].copy_from_slice(&[q.w, q.x, q.y, q.z]);
+    qpos[7..].iter_mut().zip(angles).for_each(|(q, a)| *q = f64::from(*a));
+    qpos
+}
+
+/// The poses before and after `i` and how many steps lie between them.
+fn neighbours(i: usize, count: usize, looping: bool) -> (usize, usize, f64) {
+    if looping {
+        ((i + count - 1) % count, (i + 1) % count, 2.0)
+    } else {
+        let (before, after) = (i.saturating_sub(1), (i + 1).min(count - 1));
+        (before, after, (after - before) as f64)
+    }
+}
+
+fn shift(qpos: &mut [f64; QPOS_LEN], by: DVec3) {
+    qpos[0] += by.x;
+    qpos[1] += by.y;
+}
+
+fn velocity(from: &[f64; QPOS_LEN], to: &[f64; QPOS_LEN], secs: f64) -> [f64; QVEL_LEN] {
+    let mut qvel = [0.0; QVEL_LEN];
+    for k in 0..3 {
+        qvel[k] = (to[k] - from[k]) / secs;
+    }
+    let quat = |q: &[f64; QPOS_LEN]| DQuat::from_xyzw(q[4], q[5], q[6], q[3]);
+    let mut turn = quat(from).conjugate() * quat(to);
+    if turn.w < 0.0 {
+        turn = -turn;
+    }
+    qvel[3..6].copy_from_slice(&(turn.to_scaled_axis() / secs).to_array());
+    for k in 0..DOF_COUNT {
+        let turn = to[7 + k] - from[7 + k];
+        let tau = std::f64::consts::TAU;
+        qvel[6 + k] = (turn - tau * (turn / tau).round()) / secs;
+    }
+    qvel
+}

@@ -1,0 +1,227 @@
+//! One character that learns: its body, its command, its history and its episode.
+
+use glam::Vec2;
+use physics_bridge::{Character, Model};
+use policy_core::{
+    ActionScaling, Body, CharacterState, DISCRIMINATOR_INPUT_LEN, DOF_COUNT, FrameHistory, Heading,
+    JointTargets, OBSERVATION_LEN, POLICY_INPUT_LEN, discriminator_frame_into, observe_into, target_input,
+};
+
+use super::command::{Command, DT_SECS};
+use super::config::{EnvironmentConfig, Fall, Task};
+use super::demonstrations::StartPose;
+use super::population::Stage;
+use super::reward::{RewardTerms, standing_reward, target_reward};
+use crate::Rng;
+use crate::clip::placed;
+use crate::ppo::Done;
+
+/// What a finished episode was.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Episode {
+    /// Its length.
+    pub ticks: u32,
+    /// True when it failed.
+    pub failed: bool,
+}
+
+/// One character that learns.
+#[derive(Debug)]
+pub struct Agent {
+    character: Character,
+    /// What it senses now.
+    pub state: CharacterState,
+    /// What it is asked.
+    pub command: Command,
+    history: FrameHistory,
+    rng: Rng,
+    age: u32,
+}
+
+impl Agent {
+    /// A character with its own random numbers; [`Agent::reset`] starts its first episode.
+    #[must_use]
+    pub fn new(model: &Model, rng: Rng) -> Self {
+        Self {
+            character: Character::new(model),
+            state: CharacterState::default(),
+            command: Command::default(),
+            history: FrameHistory::default(),
+            rng,
+            age: 0,
+        }
+    }
+
+    /// Starts an episode; the first one at a random age, so that a population does not end as one.
+    pub fn reset(&mut self, stage: &Stage<'_>, first: bool) {
+        let config = stage.config;
+        let start = match stage.parent_demonstrations {
+            Some(parent) if self.rng.chance(config.start.parent) => parent.draw_start(&mut self.rng),
+            _ => stage.demonstrations.draw_start(&mut self.rng),
+        };
+        if self.rng.chance(config.start.ragdoll) {
+            self.drop_limp(stage, &start);
+        } else {
+            self.start_from(&start);
+        }
+        let position = self.position();
+        let heading = self.heading().angle();
+        self.command = Command::start(config, stage.edge, position, heading, &mut self.rng);
+        self.age = if first { self.rng.index(config.episode_ticks as usize) as u32 } else { 0 };
+    }
+
+    fn start_from(&mut self, start: &StartPose) {
+        let pose = placed(&start.pose, 0.0, 0.0, f64::from(self.rng.angle()));
+        self.character.set_pose(&pose.qpos, &pose.qvel).expect("a clip's pose was tried when it was fitted");
+        self.character.sense_into(&mut self.state);
+        self.history.clear();
+        for frame in start.frames.iter() {
+            *self.history.push() = *frame;
+        }
+    }
+
+    /// Drops the character in a random attitude with loose joints and lets it come to rest for a while.
+    fn drop_limp(&mut self, stage: &Stage<'_>, start: &StartPose) {
+        let mut pose = placed(&start.pose, 0.0, 0.0, 0.0);
+        let turn = glam::Quat::from_euler(
+            glam::EulerRot::ZYX,
+            self.rng.angle(),
+            self.rng.range(-1.6, 1.6),
+            self.rng.angle(),
+        );
+        pose.qpos[2] = 0.7;
+        pose.qpos[3..7].copy_from_slice(&[turn.w, turn.x, turn.y, turn.z].map(f64::from));
+        pose.qvel.fill(0.0);
+        if self.character.set_pose(&pose.qpos, &pose.qvel).is_err() {
+            return self.start_from(start);
+        }
+        self.history.clear();
+        let ticks = 12 + self.rng.index(24);
+        for _ in 0..ticks {
+            self.character.sense_into(&mut self.state);
+            self.push_frame(stage);
+            self.go_limp();
+            if self.character.step().is_err() {
+                return self.start_from(start);
+            }
+        }
+        self.character.sense_into(&mut self.state);
+        self.push_frame(stage);
+    }
+
+    /// Targets that follow the joints: nearly no torque but the joints' damping.
+    fn go_limp(&mut self) {
+        let pose = self.character.pose();
+        let mut targets = JointTargets::default();
+        for (target, angle) in targets.0.iter_mut().zip(&pose.qpos[7..]) {
+            *target = *angle as f32;
+        }
+        self.character.actuate(&targets);
+    }
+
+    fn push_frame(&mut self, stage: &Stage<'_>) {
+        let slot = self.history.push();
+        discriminator_frame_into(&self.state, slot);
+        stage.normalisers.frame.normalise_in_place(slot);
+    }
+
+    /// Horizontal place of the pelvis.
+    #[must_use]
+    pub fn position(&self) -> Vec2 {
+        self.state.body(Body::Pelvis).position.truncate()
+    }
+
+    fn heading(&self) -> Heading {
+        Heading::from_rotation(self.state.body(Body::Pelvis).rotation)
+    }
+
+    /// Writes the normalised observation and the target: a policy's input.
+    ///
+    /// # Panics
+    /// When `out` is not [`POLICY_INPUT_LEN`] long.
+    pub fn input_into(&self, stage: &Stage<'_>, out: &mut [f32]) {
+        assert_eq!(out.len(), POLICY_INPUT_LEN, "input of a policy");
+        let (observation, target) = out.split_at_mut(OBSERVATION_LEN);
+        let observation: &mut [f32; OBSERVATION_LEN] = observation.try_into().expect("split at its length");
+        observe_into(&self.state, observation);
+        stage.normalisers.observation.normalise_in_place(observation);
+        target.copy_from_slice(&target_input(&self.state, self.command.target));
+    }
+
+    /// Acts for one tick, writes the discriminator's input afterwards and tells what the tick was worth and how it
+    /// ended. The caller resets the character when it ended.
+    pub fn step(
+        &mut self,
+        stage: &Stage<'_>,
+        scaling: &ActionScaling,
+        action: &[f32; DOF_COUNT],
+        discriminator_input: &mut [f32; DISCRIMINATOR_INPUT_LEN],
+    ) -> (RewardTerms, Done) {
+        let config = stage.config;
+        let before = self.position();
+        let mut targets = JointTargets::default();
+        scaling.targets_into(action, &mut targets);
+        self.character.actuate(&targets);
+        let diverged = self.character.step().is_err();
+        self.character.sense_into(&mut self.state);
+        self.push_frame(stage);
+        self.history.input_into(discriminator_input);
+        self.age += 1;
+        let velocity = (self.position() - before) / DT_SECS;
+        let speed = self.commanded_speed(config);
+        let terms = match config.task {
+            Task::Target => target_reward(&self.state, velocity, self.command.target, speed),
+            Task::Stand => standing_reward(&self.state),
+        };
+        let done = if diverged || !self.state.is_finite() || self.has_fallen(config) {
+            Done::Failed
+        } else if self.age >= config.episode_ticks {
+            Done::TimedOut
+        } else {
+            Done::No
+        };
+        (terms, done)
+    }
+
+    /// Renews target and blend weight, after the tick's reward.
+    pub fn advance_command(&mut self, stage: &Stage<'_>) {
+        let position = self.position();
+        self.command.advance(stage.config, stage.edge, position, &mut self.rng);
+    }
+
+    /// Length of the episode so far and whether it failed.
+    #[must_use]
+    pub fn episode(&self, done: Done) -> Episode {
+        Episode { ticks: self.age, failed: done == Done::Failed }
+    }
+
+    fn commanded_speed(&self, config: &EnvironmentConfig) -> f32 {
+        let t = self.command.blend;
+        config.parent_speed_mps + t * (config.speed_mps - config.parent_speed_mps)
+    }
+
+    fn has_fallen(&self, config: &EnvironmentConfig) -> bool {
+        config.fall == Fall::Upright && fallen(&self.state, config.fall_height)
+    }
+}
+
+/// Least heights of an upright body above the ground, metres: body frames, not lowest points.
+const LEAST_HEIGHTS: [(Body, f32); 9] = [
+    (Body::Pelvis, 0.45),
+    (Body::Torso, 0.6),
+    (Body::Head, 0.75),
+    (Body::RightHand, 0.15),
+    (Body::LeftHand, 0.15),
+    (Body::RightLowerArm, 0.3),
+    (Body::LeftLowerArm, 0.3),
+    (Body::RightThigh, 0.4),
+    (Body::LeftThigh, 0.4),
+];
+
+/// True when a body that should be up has come low; `factor` scales the heights.
+#[must_use]
+pub fn fallen(state: &CharacterState, factor: f32) -> bool {
+    LEAST_HEIGHTS
+        .iter()
+        .any(|(body, height)| state.body(*body).position.z - state.ground_height < height * factor)
+}

@@ -1,0 +1,90 @@
+//! Settings of the environment, as a recipe has them.
+
+use serde::{Deserialize, Serialize};
+
+/// What the task reward asks for.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Task {
+    /// Go to the target at the commanded speed, facing it.
+    #[default]
+    Target,
+    /// Stand: pelvis and head high, upright, still.
+    Stand,
+}
+
+/// When an episode fails.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Fall {
+    /// When pelvis, torso, head, hands, lower arms or thighs come low.
+    #[default]
+    Upright,
+    /// Never.
+    Never,
+}
+
+/// Where episodes start.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+pub struct Start {
+    /// Share of episodes that start in a pose of the parent's clips.
+    pub parent: f32,
+    /// Share of episodes that start limp on the ground, dropped there in a random pose.
+    pub ragdoll: f32,
+}
+
+impl Default for Start {
+    fn default() -> Self {
+        Self { parent: 0.0, ragdoll: 0.0 }
+    }
+}
+
+/// Settings of the environment.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+pub struct EnvironmentConfig {
+    /// Characters.
+    pub characters: usize,
+    /// Ticks of a rollout.
+    pub steps: usize,
+    /// Ticks of an episode.
+    pub episode_ticks: u32,
+    /// Speed that the skill is commanded to, metres per second.
+    pub speed_mps: f32,
+    /// Speed that its parent is commanded to, metres per second.
+    pub parent_speed_mps: f32,
+    /// What the task reward asks for.
+    pub task: Task,
+    /// When an episode fails.
+    pub fall: Fall,
+    /// Factor on the heights of the fall rule; less than 1 for low gaits.
+    pub fall_height: f32,
+    /// Distance of new targets, metres, least and most.
+    pub target_metres: [f32; 2],
+    /// Seconds until a target is renewed, least and most.
+    pub target_secs: [f32; 2],
+    /// Share of targets that lie where the character stands.
+    pub stop: f32,
+    /// Where episodes start.
+    pub start: Start,
+}
+
+impl Default for EnvironmentConfig {
+    fn default() -> Self {
+        Self {
+            characters: 512,
+            steps: 16,
+            episode_ticks: 300,
+            speed_mps: 1.25,
+            parent_speed_mps: 1.25,
+            task: Task::Target,
+            fall: Fall::Upright,
+            fall_height: 1.0,
+            target_metres: [1.0, 10.0],
+            target_secs: [2.0, 7.0],
+            stop: 0.15,
+            start: Start::default(),
+        }
+    }
+}

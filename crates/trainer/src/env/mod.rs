@@ -1,0 +1,19 @@
+//! The characters that learn: start states, targets, blends, pushes, rewards and the ends of episodes.
+//!
+//! Observation, action and discriminator features are policy-core's, physics is physics-bridge's.
+
+mod agent;
+mod command;
+mod config;
+mod demonstrations;
+mod ground;
+mod population;
+mod reward;
+
+pub use agent::{Agent, Episode, fallen};
+pub use command::{Command, DT_SECS};
+pub use config::{EnvironmentConfig, Fall, Start, Task};
+pub use demonstrations::{Demonstrations, Normalisers, SourceError, StartPose, fit};
+pub use ground::lowest_point;
+pub use population::{CRITIC_INPUT_LEN, Population, PopulationReport, Stage};
+pub use reward::{RewardTerms, standing_reward, target_reward};

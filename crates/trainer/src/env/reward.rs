@@ -1,0 +1,82 @@
+//! Task rewards, pure functions of what happened in a tick. All lie in [0, 1].
+
+use glam::{Vec2, Vec3};
+use policy_core::{Body, CharacterState, Heading};
+
+/// What a tick was worth, before the weights of a phase.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct RewardTerms {
+    /// Task reward, 0 to 1.
+    pub task: f32,
+    /// Speed towards the target, metres per second.
+    pub speed_mps: f32,
+    /// Speed commanded, metres per second.
+    pub commanded_mps: f32,
+}
+
+/// Within this distance of the target the commanded speed falls to zero, metres.
+const BRAKING_METRES: f32 = 1.0;
+
+/// Reward for going to `target` at `speed_mps` and facing it. `velocity` is that of the pelvis over the tick.
+///
+/// `0.7 exp(-2 (e^2 + 0.25 s^2) / w^2) + 0.3 facing`, with speed error `e`, sideways speed `s` and a width `w` that grows
+/// with the commanded speed, so that a walk that is asked to run feels a slope.
+#[must_use]
+pub fn target_reward(state: &CharacterState, velocity: Vec2, target: Vec2, speed_mps: f32) -> RewardTerms {
+    let pelvis = state.body(Body::Pelvis);
+    let to_target = target - pelvis.position.truncate();
+    let distance = to_target.length();
+    let facing_now = Heading::from_rotation(pelvis.rotation).direction();
+    let near = (distance / BRAKING_METRES).min(1.0);
+    let direction = if distance > 1e-3 { to_target / distance } else { facing_now };
+    let commanded_mps = speed_mps * near;
+    let along = velocity.dot(direction);
+    let sideways = velocity.perp_dot(direction);
+    let width = (commanded_mps / 1.25).max(0.6);
+    let error = ((along - commanded_mps).powi(2) + 0.25 * sideways * sideways) / (width * width);
+    // Close by, which way the target lies says nothing.
+    let facing = (1.0 - near) + near * facing_now.dot(direction).max(0.0);
+    RewardTerms { task: 0.7 * (-2.0 * error).exp() + 0.3 * facing, speed_mps: along, commanded_mps }
+}
+
+/// Reward for standing: pelvis and head at their heights, trunk upright, still once it is up.
+#[must_use]
+pub fn standing_reward(state: &CharacterState) -> RewardTerms {
+    let above = |body: Body| state.body(body).position.z - state.ground_height;
+    let pelvis = (above(Body::Pelvis) / 0.83).clamp(0.0, 1.0);
+    let head = (above(Body::Head) / 1.25).clamp(0.0, 1.0);
+    let up = (state.body(Body::Torso).rotation * Vec3::Z).z.max(0.0);
+    let speed = state.body(Body::Pelvis).linear_velocity.truncate().length();
+    let height = 0.5 * (pelvis + head);
+    let still = if height > 0.9 { (-speed * speed).exp() } else { 0.0 };
+    RewardTerms { task: 0.5 * height * height + 0.3 * height * up + 0.2 * still, ..RewardTerms::default() }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_right_speed_towards_the_target_is_worth_one() {
+        let state = CharacterState::default();
+        let terms = target_reward(&state, Vec2::new(1.25, 0.0), Vec2::new(5.0, 0.0), 1.25);
+        assert!((terms.task - 1.0).abs() < 1e-6);
+        let away = target_reward(&state, Vec2::new(-1.25, 0.0), Vec2::new(5.0, 0.0), 1.25);
+        assert!(away.task < 0.31);
+    }
+
+    #[test]
+    fn a_walk_asked_to_run_feels_a_slope() {
+        let state = CharacterState::default();
+        let at = |speed: f32| target_reward(&state, Vec2::new(speed, 0.0), Vec2::new(5.0, 0.0), 3.5).task;
+        assert!(at(1.5) - at(1.3) > 0.02, "{} {}", at(1.5), at(1.3));
+    }
+
+    #[test]
+    fn at_the_target_standing_is_best_whatever_the_heading() {
+        let state = CharacterState::default();
+        let still = target_reward(&state, Vec2::ZERO, Vec2::ZERO, 1.25);
+        assert!((still.task - 1.0).abs() < 1e-6);
+        assert!(target_reward(&state, Vec2::X, Vec2::ZERO, 1.25).task < 0.4);
+    }
+}

@@ -1,0 +1,237 @@
+//! Gradient steps of PPO. A minibatch is split into a fixed number of lanes whose gradients are summed in order, so
+//! that the result does not depend on the number of threads.
+
+use rayon::prelude::*;
+
+use super::gaussian::{kl_divergence, log_probability};
+use super::learner::{Learner, line_of};
+use super::rollout::Rollout;
+use crate::nn::{Network, Pass, clip_norm};
+
+/// Means over the rows of all gradient steps of one update.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct UpdateReport {
+    /// Divergence of the policy from the one that acted.
+    pub kl: f32,
+    /// Squared error of the critic, in scaled returns.
+    pub value_error: f32,
+    /// Share of rows whose ratio left the clip range.
+    pub clipped: f32,
+    /// Norm of the actor's gradient before clipping.
+    pub gradient_norm: f32,
+}
+
+/// One share of a minibatch: gathered rows, passes, gradients.
+#[derive(Clone, Debug)]
+pub(super) struct Lane {
+    actor: Pass,
+    critic: Pass,
+    input: Vec<f32>,
+    critic_input: Vec<f32>,
+    blend: Vec<f32>,
+    actor_gradient: Vec<f32>,
+    critic_gradient: Vec<f32>,
+    sums: UpdateReport,
+}
+
+impl Lane {
+    /// Shares of a minibatch.
+    pub(super) const COUNT: usize = 4;
+
+    pub(super) fn new(actor: &Network, critic: &Network, rows: usize) -> Self {
+        Self {
+            actor: Pass::new(actor.sizes(), rows),
+            critic: Pass::new(critic.sizes(), rows),
+            input: vec![0.0; rows * actor.inputs()],
+            critic_input: vec![0.0; rows * critic.inputs()],
+            blend: vec![0.0; rows],
+            actor_gradient: vec![0.0; actor.parameters.len()],
+            critic_gradient: vec![0.0; critic.parameters.len()],
+            sums: UpdateReport::default(),
+        }
+    }
+
+    fn accumulate(&mut self, shared: &Shared<'_>, rows: &[u32]) {
+        self.actor_gradient.fill(0.0);
+        self.critic_gradient.fill(0.0);
+        self.sums = UpdateReport::default();
+        let (inputs, critic_inputs) = (shared.actor.inputs(), shared.critic.inputs());
+        for (i, row) in rows.iter().map(|r| *r as usize).enumerate() {
+            let rollout = shared.rollout;
+            self.input[i * inputs..(i + 1) * inputs]
+                .copy_from_slice(&rollout.inputs[row * inputs..(row + 1) * inputs]);
+            self.critic_input[i * critic_inputs..(i + 1) * critic_inputs]
+                .copy_from_slice(&rollout.critic_inputs[row * critic_inputs..(row + 1) * critic_inputs]);
+            self.blend[i] = rollout.blend[row];
+        }
+        self.actor_step(shared, rows);
+        self.critic_step(shared, rows);
+    }
+
+    fn actor_step(&mut self, shared: &Shared<'_>, rows: &[u32]) {
+        let input = &self.input[..rows.len() * shared.actor.inputs()];
+        let line = line_of(shared.parent, shared.parent.is_some(), &self.blend[..rows.len()]);
+        self.actor.forward(shared.actor, line, input);
+        let actions = shared.actor.outputs();
+        let (means, deltas) = self.actor.output_and_delta(rows.len());
+        let pairs = means.chunks_exact(actions).zip(deltas.chunks_exact_mut(actions));
+        for (row, (mean, delta)) in rows.iter().zip(pairs) {
+            shared.policy_gradient(*row as usize, mean, delta, &mut self.sums);
+        }
+        self.actor.backward(shared.actor, line, input, &mut self.actor_gradient);
+    }
+
+    fn critic_step(&mut self, shared: &Shared<'_>, rows: &[u32]) {
+        let input = &self.critic_input[..rows.len() * shared.critic.inputs()];
+        self.critic.forward(shared.critic, None, input);
+        let (values, deltas) = self.critic.output_and_delta(rows.len());
+        for (row, (value, delta)) in rows.iter().zip(values.iter().zip(deltas)) {
+            let error = value - shared.rollout.returns[*row as usize] * (1.0 - shared.gamma);
+            self.sums.value_error += error * error;
+            *delta = error * shared.scale;
+        }
+        self.critic.backward(shared.critic, None, input, &mut self.critic_gradient);
+    }
+}
+
+/// What all lanes of a gradient step read.
+struct Shared<'a> {
+    rollout: &'a Rollout,
+    actor: &'a Network,
+    critic: &'a Network,
+    parent: Option<&'a Network>,
+    gamma: f32,
+    clip: f32,
+    deviation: f32,
+    bound_penalty: f32,
+    scale: f32,
+}
+
+impl Shared<'_> {
+    /// Gradient of the clipped surrogate (PPO, equation 7) and of the bound by the mean action of one row.
+    fn policy_gradient(&self, row: usize, mean: &[f32], delta: &mut [f32], sums: &mut UpdateReport) {
+        let numbers = row * mean.len()..(row + 1) * mean.len();
+        let (action, acted) = (&self.rollout.actions[numbers.clone()], &self.rollout.means[numbers]);
+        let now = log_probability(action, mean, self.deviation);
+        let ratio = (now - log_probability(action, acted, self.deviation)).clamp(-20.0, 20.0).exp();
+        let advantage = self.rollout.advantages[row];
+        let stopped = if advantage > 0.0 { ratio > 1.0 + self.clip } else { ratio < 1.0 - self.clip };
+        sums.kl += kl_divergence(mean, acted, self.deviation);
+        sums.clipped += f32::from(u8::from((ratio - 1.0).abs() > self.clip));
+        let slope = if stopped { 0.0 } else { -advantage * ratio / (self.deviation * self.deviation) };
+        for ((d, m), a) in delta.iter_mut().zip(mean).zip(action) {
+            let excess = (m.abs() - 1.0).max(0.0).copysign(*m);
+            *d = (slope * (a - m) + 2.0 * self.bound_penalty * excess) * self.scale;
+        }
+    }
+}
+
+impl Learner {
+    /// Takes the gradient steps of all epochs and steers the actor's rate by the divergence they cause.
+    pub fn update(&mut self, rollout: &Rollout) -> UpdateReport {
+        let rows = u32::try_from(rollout.rows()).expect("a rollout has fewer than 2^32 rows");
+        self.order.clear();
+        self.order.extend(0..rows);
+        let mut total = UpdateReport::default();
+        let mut steps = 0.0;
+        let mut last_epoch = (0.0, 0.0);
+        for epoch in 0..self.config.epochs {
+            for i in (1..self.order.len()).rev() {
+                let other = self.rng.index(i + 1);
+                self.order.swap(i, other);
+            }
+            let order = std::mem::take(&mut self.order);
+            for minibatch in order.chunks(self.config.minibatch) {
+                let report = self.gradient_step(rollout, minibatch);
+                if epoch + 1 == self.config.epochs {
+                    last_epoch = (last_epoch.0 + report.kl, last_epoch.1 + 1.0);
+                }
+                total.kl += report.kl;
+                total.value_error += report.value_error;
+                total.clipped += report.clipped;
+                total.gradient_norm += report.gradient_norm;
+                steps += 1.0;
+            }
+            self.order = order;
+        }
+        self.steer_rate(last_epoch.0 / last_epoch.1);
+        for value in [&mut total.kl, &mut total.value_error, &mut total.clipped, &mut total.gradient_norm] {
+            *value /= steps;
+        }
+        total
+    }
+
+    fn gradient_step(&mut self, rollout: &Rollout, minibatch: &[u32]) -> UpdateReport {
+        let shared = Shared {
+            rollout,
+            actor: &self.actor,
+            critic: &self.critic,
+            parent: self.parent.as_ref().filter(|_| self.along_line),
+            gamma: self.config.gamma,
+            clip: self.config.clip,
+            deviation: self.config.deviation,
+            bound_penalty: self.config.bound_penalty,
+            scale: 1.0 / minibatch.len() as f32,
+        };
+        let share = minibatch.len().div_ceil(Lane::COUNT);
+        let used = minibatch.len().div_ceil(share);
+        self.lanes[..used]
+            .par_iter_mut()
+            .zip(minibatch.par_chunks(share))
+            .for_each(|(lane, rows)| lane.accumulate(&shared, rows));
+        let mut report = UpdateReport::default();
+        let (first, others) = self.lanes[..used].split_first_mut().expect("a minibatch has a lane");
+        report.add(&first.sums);
+        for lane in others {
+            report.add(&lane.sums);
+            add(&mut first.actor_gradient, &lane.actor_gradient);
+            add(&mut first.critic_gradient, &lane.critic_gradient);
+        }
+        if let Some(parent) = &self.parent {
+            let pull = 2.0 * self.config.regularisation;
+            let pairs = self.actor.parameters.iter().zip(&parent.parameters);
+            for (g, (w, p)) in first.actor_gradient.iter_mut().zip(pairs) {
+                *g += pull * (w - p);
+            }
+        }
+        report.scale(1.0 / minibatch.len() as f32);
+        report.gradient_norm = clip_norm(&mut first.actor_gradient, self.config.gradient_norm);
+        clip_norm(&mut first.critic_gradient, self.config.gradient_norm);
+        self.actor_adam.step(&mut self.actor.parameters, &first.actor_gradient, self.actor_rate, 0.0);
+        let rate = self.config.critic_rate;
+        self.critic_adam.step(&mut self.critic.parameters, &first.critic_gradient, rate, 0.0);
+        report
+    }
+
+    fn steer_rate(&mut self, kl: f32) {
+        let config = &self.config;
+        if kl > 1.5 * config.target_kl {
+            self.actor_rate /= 1.3;
+        } else if kl < config.target_kl / 1.5 {
+            self.actor_rate *= 1.3;
+        }
+        self.actor_rate = self.actor_rate.clamp(config.least_actor_rate, config.most_actor_rate);
+    }
+}
+
+impl UpdateReport {
+    fn add(&mut self, other: &UpdateReport) {
+        self.kl += other.kl;
+        self.value_error += other.value_error;
+        self.clipped += other.clipped;
+    }
+
+    fn scale(&mut self, by: f32) {
+        self.kl *= by;
+        self.value_error *= by;
+        self.clipped *= by;
+    }
+}
+
+fn add(to: &mut [f32], from: &[f32]) {
+    to.iter_mut().zip(from).for_each(|(t, f)| *t += f);
+}
+
+#[cfg(test)]
+#[path = "update_tests.rs"]
+mod tests;

@@ -1,0 +1,174 @@
+//! Recipes: one TOML file for each skill, saying all that a run depends on but its seed.
+
+use std::path::{Path, PathBuf};
+
+use serde::{Deserialize, Serialize};
+
+use crate::amp::DiscriminatorConfig;
+use crate::env::EnvironmentConfig;
+use crate::ppo::PpoConfig;
+
+/// How one skill is trained.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Recipe {
+    /// Name of the skill: node of the graph, folder of the run.
+    pub skill: String,
+    /// Skill it starts from and is pulled towards.
+    #[serde(default)]
+    pub parent: Option<String>,
+    /// True to train the whole straight line from the parent, not only its end.
+    #[serde(default)]
+    pub edge: bool,
+    /// Demonstration clips.
+    pub clips: Vec<ClipShare>,
+    /// Phases in order.
+    pub phases: Vec<Phase>,
+    /// The environment.
+    #[serde(default)]
+    pub environment: EnvironmentConfig,
+    /// The policy's optimisation.
+    #[serde(default)]
+    pub ppo: PpoConfig,
+    /// The discriminator.
+    #[serde(default)]
+    pub discriminator: DiscriminatorConfig,
+}
+
+/// A clip and how often it is drawn.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct ClipShare {
+    /// Name of the clip's file, without its ending.
+    pub name: String,
+    /// Its share among the clips of the recipe.
+    #[serde(default = "one")]
+    pub share: f32,
+}
+
+fn one() -> f32 {
+    1.0
+}
+
+/// A stretch of training with its own weights of reward.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Phase {
+    /// Samples of this phase: ticks of all characters together.
+    pub samples: u64,
+    /// Weight of the task reward; the style's is one less this.
+    pub task: f32,
+}
+
+/// Why a recipe can't be used.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum RecipeError {
+    /// The file can't be read.
+    #[error("cannot read {}", path.display())]
+    Io {
+        /// The file.
+        path: PathBuf,
+        /// Why.
+        source: std::io::Error,
+    },
+    /// It is no recipe.
+    #[error("{}: {message}", path.display())]
+    Toml {
+        /// The file.
+        path: PathBuf,
+        /// What was expected and found, with its line.
+        message: String,
+    },
+    /// A field has a value that makes no sense.
+    #[error("{}: expected {expected} in {field}, found {found}", path.display())]
+    Field {
+        /// The file.
+        path: PathBuf,
+        /// The field.
+        field: &'static str,
+        /// What it should hold.
+        expected: &'static str,
+        /// What it holds.
+        found: String,
+    },
+}
+
+impl Recipe {
+    /// Reads and checks a recipe.
+    ///
+    /// # Errors
+    /// When the file can't be read, has unknown or missing fields, or a value out of its range.
+    pub fn load(path: &Path) -> Result<Self, RecipeError> {
+        let text = std::fs::read_to_string(path)
+            .map_err(|source| RecipeError::Io { path: path.to_owned(), source })?;
+        Self::parse(path, &text)
+    }
+
+    /// Parses and checks the text of a recipe; `path` is only named in errors.
+    ///
+    /// # Errors
+    /// As [`Recipe::load`].
+    pub fn parse(path: &Path, text: &str) -> Result<Self, RecipeError> {
+        let wrong = |e: toml::de::Error| RecipeError::Toml { path: path.to_owned(), message: e.to_string() };
+        let recipe: Self = toml::from_str(text).map_err(wrong)?;
+        for (holds, field, expected, found) in recipe.checks() {
+            if !holds {
+                return Err(RecipeError::Field { path: path.to_owned(), field, expected, found });
+            }
+        }
+        Ok(recipe)
+    }
+
+    fn checks(&self) -> Vec<(bool, &'static str, &'static str, String)> {
+        let (env, ppo, disc) = (&self.environment, &self.ppo, &self.discriminator);
+        let plain = |s: &str| {
+            !s.is_empty() && s.chars().all(|c| c.is_ascii_lowercase() || c.is_ascii_digit() || c == '-')
+        };
+        let unit = |x: f32| (0.0..=1.0).contains(&x);
+        let positive = |x: f32| x.is_finite() && x > 0.0;
+        let ordered = |[a, b]: [f32; 2]| a.is_finite() && b.is_finite() && 0.0 <= a && a <= b;
+        vec![
+            (plain(&self.skill), "skill", "lower-case letters, digits and dashes", self.skill.clone()),
+            (!self.edge || self.parent.is_some(), "edge", "a parent beside it", "none".into()),
+            (!self.clips.is_empty(), "clips", "at least one clip", "none".into()),
+            (self.clips.iter().all(|c| positive(c.share)), "clips.share", "positive shares", format!("{:?}", self.clips)),
+            (!self.phases.is_empty(), "phases", "at least one phase", "none".into()),
+            (self.phases.iter().all(|p| unit(p.task)), "phases.task", "a weight in [0, 1]", format!("{:?}", self.phases)),
+            ((1..=65_536).contains(&env.characters), "environment.characters", "1 to 65536", env.characters.to_string()),
+            ((1..=1024).contains(&env.steps), "environment.steps", "1 to 1024", env.steps.to_string()),
+            (env.episode_ticks > 0, "environment.episode_ticks", "at least 1", env.episode_ticks.to_string()),
+            (env.speed_mps.is_finite() && env.parent_speed_mps.is_finite(), "environment.speed_mps", "a finite speed", env.speed_mps.to_string()),
+            (ordered(env.target_metres), "environment.target_metres", "least and most distance", format!("{:?}", env.target_metres)),
+            (ordered(env.target_secs), "environment.target_secs", "least and most time", format!("{:?}", env.target_secs)),
+            (unit(env.stop) && unit(env.start.parent) && unit(env.start.ragdoll), "environment.stop and start", "shares in [0, 1]", format!("{:?}", env.start)),
+            ((0.0..1.0).contains(&ppo.gamma), "ppo.gamma", "a discount in [0, 1)", ppo.gamma.to_string()),
+            (unit(ppo.gae_lambda), "ppo.gae_lambda", "a discount in [0, 1]", ppo.gae_lambda.to_string()),
+            (positive(ppo.deviation), "ppo.deviation", "a positive deviation", ppo.deviation.to_string()),
+            (ppo.epochs > 0 && ppo.minibatch > 0, "ppo.epochs and minibatch", "at least 1", format!("{} and {}", ppo.epochs, ppo.minibatch)),
+            (positive(ppo.actor_rate) && positive(ppo.critic_rate), "ppo.actor_rate and critic_rate", "positive rates", format!("{} and {}", ppo.actor_rate, ppo.critic_rate)),
+            (ppo.regularisation >= 0.0, "ppo.regularisation", "a weight of at least 0", ppo.regularisation.to_string()),
+            (!ppo.critic_hidden.is_empty() && !disc.hidden.is_empty(), "hidden", "at least one hidden layer", "none".into()),
+            (disc.rows > 0 && disc.replay > 0, "discriminator.rows and replay", "at least 1", format!("{} and {}", disc.rows, disc.replay)),
+        ]
+    }
+
+    /// Samples of all phases.
+    #[must_use]
+    pub fn total_samples(&self) -> u64 {
+        self.phases.iter().map(|p| p.samples).sum()
+    }
+
+    /// The phase that is on after `samples` samples; the last one at the end.
+    #[must_use]
+    pub fn phase_at(&self, samples: u64) -> (usize, &Phase) {
+        let mut end = 0;
+        for (index, phase) in self.phases.iter().enumerate() {
+            end += phase.samples;
+            if samples < end {
+                return (index, phase);
+            }
+        }
+        (self.phases.len() - 1, &self.phases[self.phases.len() - 1])
+    }
+}
