@@ -50,7 +50,7 @@ const STAND: &str = "stand";
 /// # Ok(())
 /// # }
 /// ```
-#[derive(Clone, Debug)]
+#[derive(Clone)]
 pub struct Model {
     shared: Arc<Shared>,
     physics: Arc<MjModel>,
@@ -58,7 +58,6 @@ pub struct Model {
 }
 
 /// What stays the same whatever the settings.
-#[derive(Debug)]
 struct Shared {
     mjcf: Box<str>,
     terrain: Terrain,
@@ -133,8 +132,8 @@ impl Model {
     /// Compiles the text on any ground.
     pub(crate) fn compile(mjcf: &str, terrain: Terrain) -> Result<Self, ModelError> {
         let base = Arc::new(mjcf::compile(mjcf, &terrain)?);
-        let substeps = check_options(&base)?;
         let layout = Layout::of(&base)?;
+        let substeps = check_options(&base)?;
         let ground = Ground::of(&base)?;
         let (shapes, shape_geoms) = shapes(&base, &layout);
         let stand = match base.name_to_id(MjtObjBase::mjOBJ_KEY, STAND) {
@@ -235,6 +234,15 @@ impl Model {
 
     pub(crate) fn new_data(&self) -> MjData<Arc<MjModel>> {
         MjData::new(Arc::clone(&self.physics))
+    }
+}
+
+impl std::fmt::Debug for Model {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_struct("Model")
+            .field("terrain", &self.shared.terrain)
+            .field("settings", &self.settings)
+            .finish_non_exhaustive()
     }
 }
 

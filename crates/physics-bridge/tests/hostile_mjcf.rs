@@ -1,0 +1,128 @@
+//! MJCF that is malformed, or not the humanoid, is refused with an error that says where and why.
+
+mod common;
+
+use common::HUMANOID;
+use physics_bridge::Model;
+
+/// The error for the humanoid with one text replaced.
+fn refused(from: &str, to: &str) -> String {
+    assert!(HUMANOID.contains(from), "the MJCF has no {from:?}");
+    Model::from_mjcf(&HUMANOID.replacen(from, to, 1)).unwrap_err().to_string()
+}
+
+fn assert_says(error: &str, words: &[&str]) {
+    for word in words {
+        assert!(error.contains(word), "expected {word:?} in {error:?}");
+    }
+}
+
+#[test]
+fn malformed_xml_is_refused_with_its_line() {
+    assert_says(&refused("</worldbody>", "</worldbdy>"), &["XML", "worldb"]);
+    assert_says(&refused("size=\".09\"", "sise=\".09\""), &["sise", "geom", "line 44"]);
+    let long = "a".repeat(200);
+    assert_says(
+        &refused("<geom name=\"pelvis\"", &format!("<geom name=\"pelvis\" {long}=\"1\"")),
+        &["line 44"],
+    );
+    assert_says(&refused("<light", "<unknown"), &["unknown", "line"]);
+    assert!(Model::from_mjcf("").is_err());
+    assert!(Model::from_mjcf("\0").is_err());
+    assert!(Model::from_mjcf("<mujoco").is_err());
+    assert!(Model::from_mjcf(&"<body>".repeat(5_000)).is_err());
+}
+
+#[test]
+fn every_truncation_is_refused() {
+    let end = HUMANOID.rfind("</mujoco>").unwrap();
+    for length in (0..end).step_by(97).chain([end]) {
+        assert!(Model::from_mjcf(&HUMANOID[..length]).is_err(), "cut off after {length} bytes");
+    }
+}
+
+#[test]
+fn bytes_that_are_not_text_are_refused() {
+    let error = Model::from_mjcf_bytes(b"<mujoco>\xff</mujoco>").unwrap_err().to_string();
+    assert_says(&error, &["UTF-8", "offset 8"]);
+    assert!(Model::from_mjcf_bytes(HUMANOID.as_bytes()).is_ok());
+}
+
+#[test]
+fn errors_name_the_file() {
+    let folder = tempfile::tempdir().unwrap();
+    let missing = folder.path().join("missing.xml");
+    assert_says(&Model::load(&missing).unwrap_err().to_string(), &["missing.xml"]);
+    let broken = folder.path().join("broken.xml");
+    std::fs::write(&broken, "<mujoco><worldbody><geom sise='1'/></worldbody></mujoco>").unwrap();
+    assert_says(&Model::load(&broken).unwrap_err().to_string(), &["broken.xml", "sise", "line 1"]);
+    let good = folder.path().join("good.xml");
+    std::fs::write(&good, HUMANOID).unwrap();
+    assert!(Model::load(&good).is_ok());
+}
+
+#[test]
+fn what_is_not_the_humanoid_is_refused_by_name() {
+    assert_says(&Model::from_mjcf("<mujoco/>").unwrap_err().to_string(), &["35", "qpos", "found 0"]);
+    assert_says(&refused("body name=\"left_hand\"", "body name=\"left_paw\""), &["body", "left_hand"]);
+    assert_says(
+        &refused("<joint name=\"neck_x\"", "<joint name=\"throat_x\"").replace("throat", "neck"),
+        &["neck_x"],
+    );
+    assert_says(
+        &refused("<position name=\"neck_x\" joint=\"neck_x\"", "<position name=\"neck_x\" joint=\"neck_y\""),
+        &["actuator", "neck_x", "joint"],
+    );
+    assert_says(
+        &refused(
+            "<position name=\"neck_x\" joint=\"neck_x\" class=\"neck\" inheritrange=\"0\" ctrllimited=\"false\"/>",
+            "<motor name=\"neck_x\" joint=\"neck_x\"/>",
+        ),
+        &["actuator", "neck_x", "servo"],
+    );
+    assert_says(
+        &refused(
+            "name=\"left_ankle_z\" axis=\"0 0 1\"",
+            "name=\"left_ankle_z\" type=\"slide\" axis=\"0 0 1\"",
+        ),
+        &["joint", "left_ankle_z", "hinge"],
+    );
+    assert_says(
+        &refused(
+            "name=\"left_ankle_z\" axis=\"0 0 1\"",
+            "name=\"left_ankle_z\" limited=\"false\" axis=\"0 0 1\"",
+        ),
+        &["joint", "left_ankle_z", "limited"],
+    );
+    assert_says(
+        &refused("<light", "<body name=\"ball\"><freejoint/><geom size=\".1\"/></body><light"),
+        &["35", "qpos", "42"],
+    );
+    assert_says(&refused("<freejoint name=\"root\"/>", ""), &["35", "qpos", "28"]);
+}
+
+#[test]
+fn ground_that_is_not_level_is_refused() {
+    assert_says(&refused("name=\"floor\"", "name=\"flor\""), &["geom", "floor"]);
+    assert_says(&refused("name=\"floor\"", "name=\"floor\" euler=\"5 0 0\""), &["floor", "level"]);
+    assert_says(
+        &refused("name=\"floor\" type=\"plane\" size=\"0 0 1\"", "name=\"floor\" type=\"sphere\" size=\"1\""),
+        &["floor"],
+    );
+}
+
+#[test]
+fn options_that_cannot_be_stepped_are_refused() {
+    assert_says(&refused("timestep=\"0.00833333\"", "timestep=\"0.0123\""), &["timestep", "0.0123"]);
+    assert_says(&refused("integrator=\"implicitfast\"", "integrator=\"RK4\""), &["integrator", "RK4"]);
+    assert_says(&refused("memory=\"4M\"", "memory=\"10K\""), &["memory", "10240"]);
+    assert_says(&refused("memory=\"4M\"", "memory=\"4G\""), &["memory", "4294967296"]);
+}
+
+#[test]
+fn a_keyframe_that_is_no_pose_is_refused() {
+    for bad in ["nan", "inf", "1e400"] {
+        let error = refused("qpos=\"0 0 0.87", &format!("qpos=\"0 0 {bad}"));
+        assert!(error.contains("stand") || error.contains("line"), "{bad}: {error}");
+    }
+}
