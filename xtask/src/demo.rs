@@ -14,6 +14,8 @@ Set up, then run the demo. Everything but --no-install and --help is handed on t
 
 Usage: cargo xtask demo [--no-install] [ARGUMENT...]
 
+Paths are relative to the root of the repository.
+
 In a window (needs a display; a gamepad is used when one is there):
   cargo xtask demo
 
