@@ -1,3 +1,6 @@
 //! The demo: draws the humanoid, reads pad, keyboard and mouse, and shows what the policies do.
 
+pub mod gpu;
 pub mod mannequin;
+pub mod mesh;
+pub mod render;

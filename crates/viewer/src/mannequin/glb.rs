@@ -112,8 +112,8 @@ pub(super) fn write(levels: &[(Part, Part)]) -> Vec<u8> {
         "meshes": meshes,
         "skins": [{ "name": "humanoid", "joints": joints, "skeleton": 0, "inverseBindMatrices": inverse_bind }],
         "materials": [
-            material("shell", [0.72, 0.70, 0.66, 1.0], 0.42),
-            material("suit", [0.030, 0.034, 0.042, 1.0], 0.55),
+            material("shell", [0.80, 0.765, 0.70, 1.0], 0.38),
+            material("suit", [0.022, 0.025, 0.032, 1.0], 0.40),
         ],
         "accessors": writer.accessors,
         "bufferViews": writer.views,

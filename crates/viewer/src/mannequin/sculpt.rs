@@ -12,7 +12,7 @@ const BEND: f32 = 0.07;
 /// Fillet between neighbouring bodies of the suit.
 const SUIT_FILLET: f32 = 0.05;
 /// Edge of a mesh cell of the suit in the finest mesh.
-const SUIT_CELL: f32 = 0.0125;
+const SUIT_CELL: f32 = 0.0105;
 
 /// A vertex in the rest pose, pelvis at the origin, z up.
 #[derive(Clone, Copy, Debug)]
@@ -48,7 +48,12 @@ impl Sculpture {
     /// Shells with cells `coarseness` times the finest.
     pub(super) fn shells(&self, coarseness: f32) -> Part {
         let mut part = Part::default();
-        for piece in &self.shells {
+        self.pieces(false, coarseness, &mut part);
+        part
+    }
+
+    fn pieces(&self, dark: bool, coarseness: f32, part: &mut Part) {
+        for piece in self.shells.iter().filter(|p| p.dark == dark) {
             let origin = self.rest[piece.body.index()];
             let (low, high) = bounds(piece.shapes.iter());
             let field = |p: Vec3| piece_distance(piece, p);
@@ -60,10 +65,9 @@ impl Sculpture {
                 self.vertex(origin + p, normal(p, field), follow)
             }));
         }
-        part
     }
 
-    /// The suit, without what the shells hide.
+    /// The suit, without what the shells hide, and the dark pieces.
     pub(super) fn suit(&self, coarseness: f32) -> Part {
         let low = Vec3::new(-0.2, -0.35, -0.9);
         let high = Vec3::new(0.25, 0.35, 0.8);
@@ -85,6 +89,7 @@ impl Sculpture {
                 part.indices.push(new_index[i as usize]);
             }
         }
+        self.pieces(true, coarseness, &mut part);
         part
     }
 

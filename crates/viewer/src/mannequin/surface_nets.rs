@@ -47,7 +47,8 @@ pub(super) fn mesh(low: Vec3, high: Vec3, cell: f32, distance: impl Fn(Vec3) -> 
 }
 
 fn cells(size: IVec3) -> impl Iterator<Item = IVec3> {
-    (0..size.z).flat_map(move |z| (0..size.y).flat_map(move |y| (0..size.x).map(move |x| IVec3::new(x, y, z))))
+    (0..size.z)
+        .flat_map(move |z| (0..size.y).flat_map(move |y| (0..size.x).map(move |x| IVec3::new(x, y, z))))
 }
 
 /// Mean of the points where the surface crosses the cell's edges, in cell units; `None` when it does not.

@@ -1,0 +1,164 @@
+//! The layouts that the shaders read, and how a [`Scene`] becomes them.
+
+use bytemuck::{Pod, Zeroable};
+use glam::{Mat4, Vec2, Vec3};
+use policy_core::Body;
+
+use super::config::RenderConfig;
+use super::scene::{Figure, Scene};
+
+/// `Frame` of `common.wgsl`.
+#[derive(Clone, Copy, Debug, Pod, Zeroable)]
+#[repr(C)]
+pub(super) struct FrameData {
+    clip_from_world: Mat4,
+    world_from_clip: Mat4,
+    sun_clip_from_world: Mat4,
+    eye: [f32; 4],
+    to_sun: [f32; 4],
+    sun: [f32; 4],
+    zenith: [f32; 4],
+    horizon: [f32; 4],
+    bounce: [f32; 4],
+    casters: [f32; 4],
+    fade: [f32; 4],
+}
+
+/// `Instance` of `skinned.wgsl`.
+#[derive(Clone, Copy, Debug, Pod, Zeroable)]
+#[repr(C)]
+pub(super) struct InstanceData {
+    pub(super) tint: [f32; 4],
+    pub(super) ground: f32,
+    pub(super) first: u32,
+    pub(super) padding: [u32; 2],
+}
+
+/// A patch of `contact.wgsl`.
+#[derive(Clone, Copy, Debug, Pod, Zeroable)]
+#[repr(C)]
+pub(super) struct ContactData {
+    pub(super) centre: [f32; 4],
+    pub(super) along: [f32; 4],
+    pub(super) across: [f32; 4],
+}
+
+/// An instance of `shape.wgsl`.
+#[derive(Clone, Copy, Debug, Pod, Zeroable)]
+#[repr(C)]
+pub(super) struct MarkerData {
+    pub(super) rows: [[f32; 4]; 3],
+    pub(super) colour: [f32; 4],
+}
+
+impl MarkerData {
+    pub(super) fn new(place: Mat4, colour: [f32; 4]) -> Self {
+        let rows = place.transpose();
+        Self { rows: [rows.x_axis, rows.y_axis, rows.z_axis].map(|r| r.to_array()), colour }
+    }
+}
+
+/// The part of the ground that gets shadows, seen from the sun.
+struct SunView {
+    clip_from_world: Mat4,
+    /// World size of the map.
+    extent: f32,
+    /// Where something casts, texture coordinates: min, max.
+    casters: [f32; 4],
+}
+
+impl FrameData {
+    pub(super) fn new(scene: &Scene, aspect: f32, config: &RenderConfig) -> Self {
+        let clip_from_world = scene.view.clip_from_world(aspect);
+        let sun = SunView::fit(scene, config);
+        let light = &config.light;
+        let texel = sun.extent / config.shadow_size as f32;
+        let penumbra = light.penumbra_m.max(1.5 * texel) / sun.extent;
+        Self {
+            clip_from_world,
+            world_from_clip: clip_from_world.inverse(),
+            sun_clip_from_world: sun.clip_from_world,
+            eye: scene.view.eye.extend(light.exposure).to_array(),
+            to_sun: light.to_sun.normalize().extend(config.shadow_taps as f32).to_array(),
+            sun: light.sun.extend(penumbra).to_array(),
+            zenith: light.zenith.extend(0.0).to_array(),
+            horizon: light.horizon.extend(0.0).to_array(),
+            bounce: light.bounce.extend(0.0).to_array(),
+            casters: sun.casters,
+            fade: [14.0, 75.0, texel, 0.0],
+        }
+    }
+}
+
+impl SunView {
+    /// Fits the map around the focus and the figures near it, and keeps it still to whole texels.
+    fn fit(scene: &Scene, config: &RenderConfig) -> Self {
+        let to_sun = config.light.to_sun.normalize();
+        let near = |p: &&Figure| p.positions[0].distance(scene.focus) < config.shadow_reach_m;
+        let shown = if scene.hide_figures { &[][..] } else { &scene.figures[..] };
+        let far = shown.iter().filter(near).map(|f| f.positions[0].distance(scene.focus)).fold(0.0, f32::max);
+        // Steps of a fifth, so that the size does not change every frame.
+        let radius =
+            (2.0 * 1.2_f32.powf(((far + 1.4) / 2.0).max(1.0).log(1.2).ceil())).min(config.shadow_reach_m);
+        let texel = 2.0 * radius / config.shadow_size as f32;
+        let axes = glam::camera::rh::view::look_at_mat4(to_sun, Vec3::ZERO, Vec3::Z);
+        let centre = axes.transform_point3(scene.focus);
+        let centre =
+            Vec3::new((centre.x / texel).round() * texel, (centre.y / texel).round() * texel, centre.z);
+        let depth = 2.0 * radius + 6.0;
+        let projection = glam::camera::rh::proj::directx::orthographic(
+            centre.x - radius,
+            centre.x + radius,
+            centre.y - radius,
+            centre.y + radius,
+            -centre.z - depth,
+            -centre.z + depth,
+        );
+        let clip_from_world = projection * axes;
+        let mut low = Vec2::splat(f32::INFINITY);
+        let mut high = Vec2::splat(f32::NEG_INFINITY);
+        for position in shown.iter().flat_map(|f| &f.positions) {
+            let clip = clip_from_world.project_point3(*position);
+            let uv = Vec2::new(clip.x, -clip.y) * 0.5 + 0.5;
+            (low, high) = (low.min(uv), high.max(uv));
+        }
+        let margin = Vec2::splat((0.32 + config.light.penumbra_m) / (2.0 * radius));
+        let (low, high) = ((low - margin).max(Vec2::splat(0.002)), (high + margin).min(Vec2::splat(0.998)));
+        Self { clip_from_world, extent: 2.0 * radius, casters: [low.x, low.y, high.x, high.y] }
+    }
+}
+
+/// The dark patches under a figure: sharp ones under hands and feet, a wide one under the trunk.
+pub(super) fn contacts(figure: &Figure, out: &mut Vec<ContactData>) {
+    // Body, middle in its frame, half length along its x axis, half width, height at which it vanishes, darkness.
+    const PATCHES: [(Body, Vec3, f32, f32, f32, f32); 12] = [
+        (Body::RightFoot, Vec3::new(0.045, 0.0, -0.04), 0.17, 0.105, 0.22, 0.75),
+        (Body::LeftFoot, Vec3::new(0.045, 0.0, -0.04), 0.17, 0.105, 0.22, 0.75),
+        (Body::RightHand, Vec3::new(0.0, 0.0, -0.03), 0.10, 0.10, 0.22, 0.5),
+        (Body::LeftHand, Vec3::new(0.0, 0.0, -0.03), 0.10, 0.10, 0.22, 0.5),
+        (Body::RightShin, Vec3::new(0.0, 0.0, -0.1), 0.2, 0.2, 0.40, 0.45),
+        (Body::LeftShin, Vec3::new(0.0, 0.0, -0.1), 0.2, 0.2, 0.40, 0.45),
+        (Body::RightLowerArm, Vec3::new(0.0, 0.0, -0.1), 0.17, 0.17, 0.35, 0.4),
+        (Body::LeftLowerArm, Vec3::new(0.0, 0.0, -0.1), 0.17, 0.17, 0.35, 0.4),
+        (Body::Head, Vec3::new(0.0, 0.0, 0.15), 0.22, 0.22, 0.45, 0.55),
+        (Body::Torso, Vec3::new(0.0, 0.0, 0.1), 0.36, 0.36, 0.7, 0.65),
+        (Body::Pelvis, Vec3::new(0.0, 0.0, 0.05), 0.36, 0.36, 0.7, 0.65),
+        (Body::Pelvis, Vec3::new(0.0, 0.0, 0.05), 0.7, 0.7, 1.9, 0.30),
+    ];
+    for (body, middle, length, width, vanish, darkness) in PATCHES {
+        let (position, rotation) = (figure.positions[body.index()], figure.rotations[body.index()]);
+        let at = position + rotation * middle;
+        let height = (at.z - figure.ground).max(0.0);
+        let near = 1.0 - height / vanish;
+        if near <= 0.0 {
+            continue;
+        }
+        let forward = (rotation * Vec3::X).truncate().normalize_or(Vec2::X);
+        let grown = 1.0 + 0.6 * (1.0 - near);
+        out.push(ContactData {
+            centre: [at.x, at.y, figure.ground + 0.004, darkness * near],
+            along: [forward.x * length * grown, forward.y * length * grown, 0.0, 0.0],
+            across: [-forward.y * width * grown, forward.x * width * grown, 0.0, 0.0],
+        });
+    }
+}

@@ -1,0 +1,314 @@
+//! Draws a [`Scene`]: characters in one call a material, ground, sky, shadows, markers.
+//!
+//! A [`Renderer`] is a configuration, immutable pipelines, the mesh and the ground, and buffers that are
+//! rewritten for every picture. It draws into any view of the format that it was made for, and knows nothing of
+//! windows, physics or panels.
+
+mod buffers;
+mod config;
+mod gpu_data;
+mod model;
+mod off_screen;
+mod pipelines;
+mod scene;
+mod solids;
+mod targets;
+
+use crate::gpu::Gpu;
+use crate::mesh::SkinnedMesh;
+use buffers::{Growing, fixed};
+pub use config::{Light, RenderConfig};
+use gpu_data::{ContactData, FrameData, InstanceData, MarkerData, contacts};
+use model::MeshBuffers;
+pub use off_screen::OffScreen;
+pub use pipelines::SHADERS;
+use pipelines::{Layouts, Pipelines};
+pub use scene::{Figure, Marker, RibbonVertex, Scene, Solid, View};
+pub use solids::{GroundGrid, SolidVertex};
+use targets::Targets;
+
+/// Draws scenes. See the module.
+#[derive(Debug)]
+pub struct Renderer {
+    gpu: Gpu,
+    config: RenderConfig,
+    format: wgpu::TextureFormat,
+    layouts: Layouts,
+    pipelines: Pipelines,
+    mesh: SkinnedMesh,
+    mesh_buffers: MeshBuffers,
+    ground: (wgpu::Buffer, u32),
+    solids: (wgpu::Buffer, [std::ops::Range<u32>; 5]),
+    shadow_map: wgpu::TextureView,
+    shadow_group: wgpu::BindGroup,
+    frame: wgpu::Buffer,
+    frame_group: wgpu::BindGroup,
+    instances: Growing,
+    palette: Growing,
+    figures_group: wgpu::BindGroup,
+    contacts: Growing,
+    markers: Growing,
+    ribbons: Growing,
+    targets: Option<Targets>,
+}
+
+/// Numbers of what one picture draws, filled in by the upload.
+struct Counts {
+    figures: u32,
+    contacts: u32,
+    markers: [std::ops::Range<u32>; 5],
+    ribbons: u32,
+}
+
+impl Renderer {
+    /// A renderer for views of `format`, which should not be an sRGB format.
+    #[must_use]
+    pub fn new(gpu: &Gpu, format: wgpu::TextureFormat, config: RenderConfig, mesh: SkinnedMesh) -> Self {
+        use wgpu::BufferUsages as Usage;
+        let device = &gpu.device;
+        let layouts = Layouts::new(device);
+        let pipelines = Pipelines::new(device, &layouts, format, &config);
+        let mesh_buffers = MeshBuffers::new(device, &layouts, &mesh);
+        let (solid_vertices, ranges) = solids::solids();
+        let shadow_map = targets::shadow_map(device, config.shadow_size);
+        let shadow_group = shadow_group(device, &layouts, &shadow_map);
+        let frame = fixed(
+            device,
+            "frame",
+            Usage::UNIFORM | Usage::COPY_DST,
+            &[<FrameData as bytemuck::Zeroable>::zeroed()],
+        );
+        let frame_group = bind_buffers(device, &layouts.frame, &[&frame]);
+        let instances = Growing::new(device, "instances", Usage::STORAGE);
+        let palette = Growing::new(device, "palette", Usage::STORAGE);
+        let figures_group = bind_buffers(device, &layouts.figures, &[instances.buffer(), palette.buffer()]);
+        Self {
+            ground: ground_buffer(device, None),
+            solids: (fixed(device, "solids", Usage::VERTEX, &solid_vertices), ranges),
+            contacts: Growing::new(device, "contacts", Usage::VERTEX),
+            markers: Growing::new(device, "markers", Usage::VERTEX),
+            ribbons: Growing::new(device, "ribbons", Usage::VERTEX),
+            targets: None,
+            gpu: gpu.clone(),
+            config,
+            format,
+            layouts,
+            pipelines,
+            mesh,
+            mesh_buffers,
+            shadow_map,
+            shadow_group,
+            frame,
+            frame_group,
+            instances,
+            palette,
+            figures_group,
+        }
+    }
+
+    /// Puts another humanoid in the place of the present one.
+    pub fn set_mesh(&mut self, mesh: SkinnedMesh) {
+        self.mesh_buffers = MeshBuffers::new(&self.gpu.device, &self.layouts, &mesh);
+        self.mesh = mesh;
+    }
+
+    /// Puts other ground under the characters; `None` is flat at height 0.
+    pub fn set_ground(&mut self, grid: Option<&GroundGrid>) {
+        self.ground = ground_buffer(&self.gpu.device, grid);
+    }
+
+    /// Records everything that draws `scene` into `view`, whose size is `size` (width, height).
+    pub fn draw(
+        &mut self,
+        encoder: &mut wgpu::CommandEncoder,
+        view: &wgpu::TextureView,
+        size: [u32; 2],
+        scene: &Scene,
+    ) {
+        let counts = self.upload(scene, size);
+        if self.targets.as_ref().is_none_or(|t| t.size != size) {
+            self.targets = Some(Targets::new(&self.gpu.device, size, self.format, &self.config));
+        }
+        self.draw_shadows(encoder, &counts);
+        self.draw_picture(encoder, view, &counts);
+    }
+
+    /// Draws `scene` into a picture and reads it back.
+    ///
+    /// # Errors
+    /// When the device is lost.
+    pub fn picture(
+        &mut self,
+        target: &OffScreen,
+        scene: &Scene,
+    ) -> Result<image::RgbaImage, crate::gpu::GpuError> {
+        let mut encoder = self.gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
+        self.draw(&mut encoder, target.view(), target.size(), scene);
+        target.finish(&self.gpu, encoder)
+    }
+
+    fn upload(&mut self, scene: &Scene, [width, height]: [u32; 2]) -> Counts {
+        let (device, queue) = (&self.gpu.device, &self.gpu.queue);
+        let aspect = width as f32 / height.max(1) as f32;
+        queue.write_buffer(&self.frame, 0, bytemuck::bytes_of(&FrameData::new(scene, aspect, &self.config)));
+
+        let figures = if scene.hide_figures { &[][..] } else { &scene.figures[..] };
+        let joints = self.mesh.joints.len();
+        let mut palette = Vec::with_capacity(figures.len() * joints);
+        let mut instances = Vec::with_capacity(figures.len());
+        let mut patches: Vec<ContactData> = Vec::new();
+        for figure in figures {
+            let first = palette.len() as u32;
+            instances.push(InstanceData { tint: figure.tint, ground: figure.ground, first, padding: [0; 2] });
+            self.mesh.palette_into(&figure.positions, &figure.rotations, &mut palette);
+            contacts(figure, &mut patches);
+        }
+        let grown =
+            self.palette.write(device, queue, &palette) | self.instances.write(device, queue, &instances);
+        if grown {
+            let buffers = [self.instances.buffer(), self.palette.buffer()];
+            self.figures_group = bind_buffers(device, &self.layouts.figures, &buffers);
+        }
+        self.contacts.write(device, queue, &patches);
+        self.ribbons.write(device, queue, &scene.ribbons);
+        let mut sorted = Vec::with_capacity(scene.markers.len());
+        let markers = Solid::ALL.map(|solid| {
+            let start = sorted.len() as u32;
+            let of_kind = scene.markers.iter().filter(|m| m.solid == solid);
+            sorted.extend(of_kind.map(|m| MarkerData::new(m.place, m.colour)));
+            start..sorted.len() as u32
+        });
+        self.markers.write(device, queue, &sorted);
+        Counts {
+            figures: instances.len() as u32,
+            contacts: patches.len() as u32,
+            markers,
+            ribbons: scene.ribbons.len() as u32,
+        }
+    }
+
+    /// Level of detail for so many figures.
+    fn level(&self, figures: u32) -> &model::LevelBuffers {
+        let coarse = figures as usize > self.config.coarse_above;
+        let last = self.mesh_buffers.levels.len() - 1;
+        &self.mesh_buffers.levels[if coarse { last } else { 0 }]
+    }
+
+    fn draw_shadows(&self, encoder: &mut wgpu::CommandEncoder, counts: &Counts) {
+        let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
+            label: Some("shadows"),
+            depth_stencil_attachment: Some(depth_attachment(&self.shadow_map, wgpu::StoreOp::Store)),
+            ..Default::default()
+        });
+        if counts.figures == 0 {
+            return;
+        }
+        let level = self.level(counts.figures);
+        pass.set_pipeline(&self.pipelines.skinned_shadow);
+        pass.set_bind_group(0, &self.frame_group, &[]);
+        pass.set_bind_group(2, &self.figures_group, &[]);
+        pass.set_vertex_buffer(0, level.vertices.slice(..));
+        pass.set_index_buffer(level.indices.slice(..), wgpu::IndexFormat::Uint32);
+        let end = level.parts.iter().map(|p| p.1.end).max().unwrap_or(0);
+        pass.draw_indexed(0..end, 0, 0..counts.figures);
+    }
+
+    fn draw_picture(&self, encoder: &mut wgpu::CommandEncoder, view: &wgpu::TextureView, counts: &Counts) {
+        let targets = self.targets.as_ref().expect("made by draw");
+        let (view, resolve_target, store) = match &targets.colour {
+            Some(colour) => (colour, Some(view), wgpu::StoreOp::Discard),
+            None => (view, None, wgpu::StoreOp::Store),
+        };
+        let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
+            label: Some("picture"),
+            color_attachments: &[Some(wgpu::RenderPassColorAttachment {
+                view,
+                depth_slice: None,
+                resolve_target,
+                ops: wgpu::Operations { load: wgpu::LoadOp::Clear(wgpu::Color::BLACK), store },
+            })],
+            depth_stencil_attachment: Some(depth_attachment(&targets.depth, wgpu::StoreOp::Discard)),
+            ..Default::default()
+        });
+        pass.set_bind_group(0, &self.frame_group, &[]);
+        pass.set_bind_group(1, &self.shadow_group, &[]);
+        self.draw_figures(&mut pass, counts);
+        pass.set_pipeline(&self.pipelines.ground);
+        pass.set_vertex_buffer(0, self.ground.0.slice(..));
+        pass.draw(0..self.ground.1, 0..1);
+        pass.set_pipeline(&self.pipelines.contact);
+        pass.set_vertex_buffer(0, self.contacts.buffer().slice(..));
+        pass.draw(0..4, 0..counts.contacts);
+        pass.set_pipeline(&self.pipelines.sky);
+        pass.draw(0..3, 0..1);
+        pass.set_pipeline(&self.pipelines.ribbon);
+        pass.set_vertex_buffer(0, self.ribbons.buffer().slice(..));
+        pass.draw(0..counts.ribbons, 0..1);
+        pass.set_pipeline(&self.pipelines.shape);
+        pass.set_vertex_buffer(0, self.solids.0.slice(..));
+        pass.set_vertex_buffer(1, self.markers.buffer().slice(..));
+        for (vertices, instances) in self.solids.1.iter().zip(&counts.markers) {
+            pass.draw(vertices.clone(), instances.clone());
+        }
+    }
+
+    /// One draw call for each material, however many figures there are.
+    fn draw_figures(&self, pass: &mut wgpu::RenderPass<'_>, counts: &Counts) {
+        if counts.figures == 0 {
+            return;
+        }
+        let level = self.level(counts.figures);
+        pass.set_pipeline(&self.pipelines.skinned);
+        pass.set_bind_group(2, &self.figures_group, &[]);
+        pass.set_vertex_buffer(0, level.vertices.slice(..));
+        pass.set_index_buffer(level.indices.slice(..), wgpu::IndexFormat::Uint32);
+        for (material, indices) in &level.parts {
+            pass.set_bind_group(3, &self.mesh_buffers.materials[*material], &[]);
+            pass.draw_indexed(indices.clone(), 0, 0..counts.figures);
+        }
+    }
+}
+
+fn depth_attachment(
+    view: &wgpu::TextureView,
+    store: wgpu::StoreOp,
+) -> wgpu::RenderPassDepthStencilAttachment<'_> {
+    let depth_ops = Some(wgpu::Operations { load: wgpu::LoadOp::Clear(1.0), store });
+    wgpu::RenderPassDepthStencilAttachment { view, depth_ops, stencil_ops: None }
+}
+
+fn ground_buffer(device: &wgpu::Device, grid: Option<&GroundGrid>) -> (wgpu::Buffer, u32) {
+    let vertices = solids::ground(grid);
+    (fixed(device, "ground", wgpu::BufferUsages::VERTEX, &vertices), vertices.len() as u32)
+}
+
+fn bind_buffers(
+    device: &wgpu::Device,
+    layout: &wgpu::BindGroupLayout,
+    buffers: &[&wgpu::Buffer],
+) -> wgpu::BindGroup {
+    let entries: Vec<wgpu::BindGroupEntry<'_>> = buffers
+        .iter()
+        .zip(0..)
+        .map(|(buffer, binding)| wgpu::BindGroupEntry { binding, resource: buffer.as_entire_binding() })
+        .collect();
+    device.create_bind_group(&wgpu::BindGroupDescriptor { label: None, layout, entries: &entries })
+}
+
+fn shadow_group(device: &wgpu::Device, layouts: &Layouts, map: &wgpu::TextureView) -> wgpu::BindGroup {
+    let sampler = device.create_sampler(&wgpu::SamplerDescriptor {
+        label: Some("shadow"),
+        mag_filter: wgpu::FilterMode::Linear,
+        min_filter: wgpu::FilterMode::Linear,
+        compare: Some(wgpu::CompareFunction::LessEqual),
+        ..Default::default()
+    });
+    device.create_bind_group(&wgpu::BindGroupDescriptor {
+        label: Some("shadow"),
+        layout: &layouts.shadow,
+        entries: &[
+            wgpu::BindGroupEntry { binding: 0, resource: wgpu::BindingResource::TextureView(map) },
+            wgpu::BindGroupEntry { binding: 1, resource: wgpu::BindingResource::Sampler(&sampler) },
+        ],
+    })
+}

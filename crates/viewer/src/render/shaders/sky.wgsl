@@ -1,0 +1,18 @@
+// The sky: one triangle over the whole picture, behind everything.
+
+struct Varying {
+    @builtin(position) clip: vec4f,
+    @location(0) at: vec2f,
+}
+
+@vertex
+fn vs_main(@builtin(vertex_index) index: u32) -> Varying {
+    let at = vec2f(f32(index & 1u), f32(index >> 1u)) * 4.0 - 1.0;
+    return Varying(vec4f(at, 1.0, 1.0), at);
+}
+
+@fragment
+fn fs_main(in: Varying) -> @location(0) vec4f {
+    let far = frame.world_from_clip * vec4f(in.at, 1.0, 1.0);
+    return vec4f(to_screen(sky(normalize(far.xyz / far.w - frame.eye.xyz))), 1.0);
+}
