@@ -11,7 +11,7 @@ use clap::Args;
 use serde_json::Value;
 
 use crate::setup::{self, Purpose};
-use crate::workspace::{Workspace, answers, run as run_command};
+use crate::workspace::{Workspace, answers, output_of, run as run_command};
 
 /// What can be said about fuzzing.
 #[derive(Debug, Args)]
@@ -28,7 +28,7 @@ pub struct FuzzArgs {
 /// # Errors
 /// When the tools are missing, the target is unknown, or a target found an input that breaks it.
 pub fn run(workspace: &Workspace, arguments: &FuzzArgs) -> Result<()> {
-    let targets = chosen(&targets(workspace.root())?, arguments.target.as_deref())?;
+    let targets = chosen(&targets(workspace)?, arguments.target.as_deref())?;
     let seconds = arguments.minutes * 60.0;
     ensure!((1.0..1e6).contains(&seconds), "expected minutes above 0, found {}", arguments.minutes);
     if !answers(Command::new("rustup").args(["run", "nightly", "cargo", "fuzz", "--version"])) {
@@ -54,10 +54,20 @@ pub fn run(workspace: &Workspace, arguments: &FuzzArgs) -> Result<()> {
     Ok(())
 }
 
-/// The names of all targets, sorted.
-fn targets(root: &Path) -> Result<Vec<String>> {
-    let sources = files_with_extension(&root.join("fuzz/fuzz_targets"), "rs")?;
-    Ok(sources.iter().filter_map(|path| Some(path.file_stem()?.to_string_lossy().into_owned())).collect())
+/// The names of all targets: the binaries of `fuzz/Cargo.toml`.
+fn targets(workspace: &Workspace) -> Result<Vec<String>> {
+    let arguments = ["metadata", "--no-deps", "--format-version", "1", "--manifest-path", "fuzz/Cargo.toml"];
+    let metadata = output_of(workspace.cargo().args(arguments))?;
+    target_names(&metadata).context("read what cargo metadata says of fuzz/Cargo.toml")
+}
+
+fn target_names(metadata: &str) -> Result<Vec<String>> {
+    let metadata: Value = serde_json::from_str(metadata)?;
+    let targets = metadata["packages"][0]["targets"].as_array().context("it lists no targets")?;
+    let is_binary =
+        |target: &&Value| target["kind"].as_array().is_some_and(|kinds| kinds.contains(&"bin".into()));
+    let names = targets.iter().filter(is_binary).filter_map(|target| target["name"].as_str());
+    Ok(names.map(str::to_owned).collect())
 }
 
 /// Starts a target's corpus with what the project ships: sound input is the best to mutate.
@@ -114,14 +124,25 @@ mod tests {
     use crate::workspace::ScratchFolder;
 
     #[test]
-    fn targets_are_the_sources_of_the_folder() {
-        let folder = ScratchFolder::new("fuzz");
-        let sources = folder.path().join("fuzz/fuzz_targets");
-        fs::create_dir_all(&sources).unwrap();
-        for name in ["script.rs", "pack.rs", "notes.md"] {
-            fs::write(sources.join(name), "").unwrap();
-        }
-        assert_eq!(targets(folder.path()).unwrap(), ["pack", "script"]);
+    fn targets_are_the_binaries_of_the_package() {
+        let metadata = r#"{"packages": [{"targets": [
+            {"name": "pack", "kind": ["bin"]}, {"name": "checks", "kind": ["lib"]}, {"name": "script", "kind": ["bin"]}
+        ]}]}"#;
+        assert_eq!(target_names(metadata).unwrap(), ["pack", "script"]);
+        assert!(target_names("{}").is_err());
+    }
+
+    #[test]
+    fn sound_scripts_start_the_corpus() {
+        let root = ScratchFolder::new("seeds");
+        let scripts = root.path().join("assets/scripts");
+        fs::create_dir_all(&scripts).unwrap();
+        fs::write(scripts.join("walk.ron"), "(entries: [])").unwrap();
+        fs::write(scripts.join("README.md"), "").unwrap();
+        seed(root.path(), "script").unwrap();
+        let corpus = root.path().join("fuzz/corpus/script");
+        assert_eq!(fs::read_to_string(corpus.join("walk.ron")).unwrap(), "(entries: [])");
+        assert!(!corpus.join("README.md").exists());
     }
 
     #[test]

@@ -1,8 +1,9 @@
 //! `bench policy`: policy-core's own benchmarks, then the peers', in one run on one machine.
 //!
-//! The contract with `crates/policy-core/benches/policy.rs`: benchmarks or groups of one named `evaluate`,
-//! `fused`, `cached`, `batched` and `tick`; `batched` says by its throughput how many characters (elements) one
-//! iteration evaluates. The peers are the group `peers` of `benches/peers`, one benchmark each.
+//! The contract with `crates/policy-core/benches/{policy,tick}.rs`: benchmarks, or groups of one, named
+//! `evaluate`, `fused`, `cached`, `batched` and `tick`; one iteration of `batched` evaluates [`BATCH`] characters,
+//! unless its throughput names another number of elements. The peers are the group `peers` of `benches/peers`,
+//! one benchmark each.
 
 use std::path::Path;
 use std::process::{Command, Stdio};
@@ -13,6 +14,9 @@ use serde_json::{Map, Value, json};
 use super::estimates::{Estimate, read, read_group};
 use crate::setup;
 use crate::workspace::{Workspace, run};
+
+/// Characters in one iteration of `batched`.
+const BATCH: u64 = 256;
 
 /// Measures and collects the figures.
 ///
@@ -27,7 +31,7 @@ pub fn measure(workspace: &Workspace, with_peers: bool) -> Result<Map<String, Va
     if with_peers {
         build_peers(workspace)?;
     }
-    let own = ["bench", "-p", "policy-core", "--bench", "policy"];
+    let own = ["bench", "-p", "policy-core", "--bench", "policy", "--bench", "tick"];
     run(quiet(workspace.cargo().args(own).env("CRITERION_HOME", &home)))?;
     if with_peers {
         let library = setup::onnx_runtime(workspace)?;
@@ -63,8 +67,7 @@ fn figures(home: &Path) -> Result<Map<String, Value>> {
     for name in ["evaluate", "fused", "cached"] {
         figures.insert(format!("{name}_ns"), rounded(read(home, name)?.median_ns));
     }
-    let batched = read(home, "batched")?;
-    figures.insert("batched_ns_per_character".to_owned(), rounded(per_element(batched)?));
+    figures.insert("batched_ns_per_character".to_owned(), rounded(per_character(read(home, "batched")?)));
     figures.insert("tick_ns".to_owned(), rounded(read(home, "tick")?.median_ns));
     let peers = read_group(home, "peers")?.into_iter();
     let peers: Map<String, Value> =
@@ -73,12 +76,8 @@ fn figures(home: &Path) -> Result<Map<String, Value>> {
     Ok(figures)
 }
 
-fn per_element(estimate: Estimate) -> Result<f64> {
-    let elements = estimate
-        .elements
-        .filter(|count| *count > 0)
-        .context("`batched` must set Throughput::Elements to its number of characters")?;
-    Ok(estimate.median_ns / elements as f64)
+fn per_character(estimate: Estimate) -> f64 {
+    estimate.median_ns / estimate.elements.filter(|count| *count > 0).unwrap_or(BATCH) as f64
 }
 
 /// Tenths of a nanosecond: more digits than a clock has.
@@ -126,11 +125,14 @@ mod tests {
     }
 
     #[test]
-    fn a_batch_of_unknown_size_or_a_missing_figure_is_an_error() {
+    fn the_size_of_a_batch_is_the_agreed_one_unless_it_is_named() {
+        let of = |elements| per_character(Estimate { median_ns: 5120.0, elements });
+        assert_eq!((of(None), of(Some(512))), (20.0, 10.0));
+    }
+
+    #[test]
+    fn a_missing_figure_is_an_error() {
         let home = measured("policy-errors");
-        pretend(home.path(), "batched/256", 1000.0, None);
-        assert!(figures(home.path()).unwrap_err().to_string().contains("Throughput::Elements"));
-        pretend(home.path(), "batched/256", 1000.0, Some(256));
         std::fs::remove_dir_all(home.path().join("cached")).unwrap();
         assert!(figures(home.path()).unwrap_err().to_string().contains("`cached`"));
     }
