@@ -107,7 +107,7 @@ fn dispatch(verb: Verb) -> Result<ExitCode> {
     match verb {
         Verb::Setup(arguments) => {
             setup::prepare(&workspace, Purpose::Tests, !arguments.no_install)?;
-            eprintln!("xtask: the set-up is complete");
+            eprintln!("xtask: libmujoco is ready");
         }
         Verb::Demo(arguments) => return demo::run(&workspace, arguments.arguments),
         Verb::Test(arguments) => {

@@ -152,7 +152,7 @@ fn pip_download(library: &NativeLibrary, build: &Build, into: &Path) -> Result<(
             library.package,
             library.version,
             output.status,
-            last_lines(&said, 6)
+            essence(&said)
         );
     }
     Ok(())
@@ -170,9 +170,12 @@ fn only_wheel_in(folder: &Path) -> Result<PathBuf> {
     Ok(wheels.remove(0))
 }
 
-fn last_lines(text: &str, count: usize) -> String {
+/// What matters of pip's words: its errors, or its last lines when it names none. Indented.
+fn essence(text: &str) -> String {
+    let errors: Vec<&str> = text.lines().filter(|line| line.starts_with("ERROR")).collect();
     let lines: Vec<&str> = text.lines().filter(|line| !line.trim().is_empty()).collect();
-    lines[lines.len().saturating_sub(count)..].iter().map(|line| format!("    {line}\n")).collect()
+    let chosen = if errors.is_empty() { &lines[lines.len().saturating_sub(4)..] } else { &errors };
+    chosen.iter().map(|line| format!("    {line}\n")).collect()
 }
 
 #[cfg(test)]
@@ -213,7 +216,8 @@ mod tests {
     }
 
     #[test]
-    fn only_the_end_of_a_long_message_is_quoted() {
-        assert_eq!(last_lines("a\n\nb\nc\n", 2), "    b\n    c\n");
+    fn of_a_long_message_the_errors_are_quoted_or_the_end() {
+        assert_eq!(essence("WARNING: again\nERROR: none found\n\n"), "    ERROR: none found\n");
+        assert_eq!(essence("a\nb\n\nc\nd\ne\n"), "    b\n    c\n    d\n    e\n");
     }
 }
