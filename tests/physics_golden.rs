@@ -28,6 +28,12 @@ fn targets(tick: &GoldenTick) -> JointTargets {
     targets
 }
 
+/// The largest difference between two lists of the same length.
+fn furthest(a: &[f64], b: &[f64]) -> f64 {
+    assert_eq!(a.len(), b.len());
+    a.iter().zip(b).map(|(a, b)| (a - b).abs()).fold(0.0, |x, y| if y > x || y.is_nan() { y } else { x })
+}
+
 #[test]
 fn the_recording_is_in_our_order() {
     let golden = golden_walk();
@@ -67,18 +73,19 @@ fn every_action_becomes_the_recorded_targets() {
     }
 }
 
-/// MuJoCo itself, fed the recorded joint targets in double precision, follows the recording bit for bit:
-/// the character in `assets/` is the one that was recorded.
+/// MuJoCo itself, fed the recorded joint targets in double precision, follows the recording: the character in
+/// `assets/` is the one that was recorded. On the machine of the recording not a bit differs; the tolerance is
+/// for the sines of other systems' libraries.
 #[test]
-fn bare_mujoco_repeats_the_recording_bit_for_bit() {
+fn bare_mujoco_repeats_the_recording() {
     let model = Arc::new(MjModel::from_xml_string(HUMANOID_MJCF).unwrap());
     let golden = golden_walk();
     let mut data = MjData::new(Arc::clone(&model));
     data.qpos_mut().copy_from_slice(&golden.ticks[0].qpos);
     data.qvel_mut().copy_from_slice(&golden.ticks[0].qvel);
     for (index, tick) in golden.ticks.iter().enumerate() {
-        assert_eq!(data.qpos(), tick.qpos, "qpos of tick {index}");
-        assert_eq!(data.qvel(), tick.qvel, "qvel of tick {index}");
+        let (qpos, qvel) = (furthest(data.qpos(), &tick.qpos), furthest(data.qvel(), &tick.qvel));
+        assert!(qpos < 1e-9 && qvel < 1e-7, "tick {index}: qpos differs by {qpos}, qvel by {qvel}");
         data.ctrl_mut().copy_from_slice(&tick.ctrl);
         for _ in 0..4 {
             data.step();
@@ -95,9 +102,8 @@ fn the_recorded_targets_reproduce_the_recorded_motion() {
     let mut character = Character::new(&model);
     pose(&mut character, &golden.ticks[0]);
     for (index, tick) in golden.ticks.iter().enumerate() {
-        let found = character.pose();
-        let largest = found.qpos.iter().zip(&tick.qpos).map(|(a, b)| (a - b).abs()).fold(0.0_f64, f64::max);
-        assert!(largest <= TOLERANCE.into(), "tick {index}: qpos differs by {largest}");
+        let difference = furthest(&character.pose().qpos, &tick.qpos);
+        assert!(difference <= TOLERANCE.into(), "tick {index}: qpos differs by {difference}");
         character.actuate(&targets(tick));
         character.step().unwrap();
     }

@@ -43,9 +43,7 @@ const STAND: &str = "stand";
 /// let hills = model.with_terrain(Terrain::Wavy { height_m: 0.2, wavelength_m: 4.0, seed: 1 })?;
 /// assert!(hills.height_at(3.0, 1.0) >= 0.0);
 ///
-/// let mut settings = Settings::default();
-/// settings.gravity = 0.165;
-/// let moon = model.with_settings(settings)?;
+/// let moon = model.with_settings(Settings { gravity: 0.165, ..Settings::default() })?;
 /// assert_eq!(moon.mass_kg(), model.mass_kg());
 /// # Ok(())
 /// # }

@@ -9,7 +9,6 @@ use crate::model_error::ModelError;
 /// Factors on what the MJCF says; all 1 by default, which changes no bit.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-#[non_exhaustive]
 pub struct Settings {
     /// Of gravity, in [0, 5]: 0 is free fall, 0.165 the moon.
     pub gravity: f32,

@@ -1,25 +1,24 @@
-//! A tick allocates nothing. Alone in its process, because the allocator belongs to all of it.
+//! A tick allocates nothing. One test, alone in its process, because the allocator belongs to all of it.
 
 mod common;
 
 use std::alloc::{GlobalAlloc, Layout, System};
-use std::cell::Cell;
+use std::num::NonZeroUsize;
+use std::sync::atomic::{AtomicU64, Ordering};
 
 use common::{humanoid, wriggle};
 use glam::Vec3;
-use physics_bridge::{BodyPoses, Character, HISTORY_SECS, Terrain};
+use physics_bridge::{BodyPoses, Character, Crowd, HISTORY_SECS, Terrain};
 use policy_core::{Body, CharacterState};
 
 struct Counting;
 
-thread_local! {
-    static COUNT: Cell<u64> = const { Cell::new(0) };
-}
+static COUNT: AtomicU64 = AtomicU64::new(0);
 
 // SAFETY: every call is handed on to the system's allocator; the counter allocates nothing.
 unsafe impl GlobalAlloc for Counting {
     unsafe fn alloc(&self, layout: Layout) -> *mut u8 {
-        COUNT.with(|count| count.set(count.get() + 1));
+        COUNT.fetch_add(1, Ordering::Relaxed);
         // SAFETY: the caller's promises are handed on.
         unsafe { System.alloc(layout) }
     }
@@ -34,18 +33,19 @@ unsafe impl GlobalAlloc for Counting {
 static ALLOCATOR: Counting = Counting;
 
 fn allocations(work: impl FnOnce()) -> u64 {
-    let before = COUNT.with(Cell::get);
+    let before = COUNT.load(Ordering::Relaxed);
     work();
-    COUNT.with(Cell::get) - before
+    COUNT.load(Ordering::Relaxed) - before
 }
 
 #[test]
-fn the_counter_counts() {
-    assert!(allocations(|| drop(std::hint::black_box(vec![0u8; 100]))) > 0);
+fn ticks_allocate_nothing() {
+    assert!(allocations(|| drop(std::hint::black_box(vec![0u8; 100]))) > 0, "the counter counts");
+    a_character_allocates_nothing();
+    a_crowd_allocates_no_more_with_more_characters();
 }
 
-#[test]
-fn a_tick_allocates_nothing() {
+fn a_character_allocates_nothing() {
     let terrain = Terrain::Steps { rise_m: 0.1, run_m: 0.5, count: 4 };
     for model in [humanoid(), humanoid().with_terrain(terrain).unwrap()] {
         let mut character = Character::new(&model);
@@ -68,5 +68,27 @@ fn a_tick_allocates_nothing() {
             character.restore(&saved).unwrap();
         });
         assert_eq!(count, 0);
+    }
+}
+
+/// The thread pool takes a block for its queue every few dozen ticks; nothing goes with the characters.
+fn a_crowd_allocates_no_more_with_more_characters() {
+    const TICKS: u64 = 128;
+    let model = humanoid();
+    for count in [1, 16] {
+        let characters = (0..count).map(|_| Character::new(&model)).collect();
+        let mut crowd = Crowd::new(characters, NonZeroUsize::new(2)).unwrap();
+        let mut ticks = vec![0; count];
+        let mut run = |times: u64| {
+            for _ in 0..times {
+                crowd.tick_with(&mut ticks, |_, tick, _, targets| {
+                    *targets = wriggle(*tick);
+                    *tick += 1;
+                });
+            }
+        };
+        run(4); // the threads have started
+        let found = allocations(|| run(TICKS));
+        assert!(found <= TICKS / 16, "{found} allocations in {TICKS} ticks of {count} characters");
     }
 }

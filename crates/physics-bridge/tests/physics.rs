@@ -153,8 +153,7 @@ fn settings_change_under_way_and_back() {
     let mut character = Character::new(&model);
     let mut other = Character::new(&model);
     assert!(character.set_model(&moon).is_err(), "another compilation of the same text");
-    let mut settings = Settings::default();
-    settings.gravity = 0.165;
+    let settings = Settings { gravity: 0.165, ..Settings::default() };
     let moon = model.with_settings(settings).unwrap();
     character.set_model(&moon).unwrap();
     run(&mut character, 5);
@@ -170,8 +169,7 @@ fn settings_change_under_way_and_back() {
 #[test]
 fn settings_out_of_range_are_refused() {
     for bad in [-1.0, f32::NAN, 5.1] {
-        let mut settings = Settings::default();
-        settings.friction = bad;
+        let settings = Settings { friction: bad, ..Settings::default() };
         let error = humanoid().with_settings(settings).unwrap_err().to_string();
         assert!(error.contains("friction"), "{error}");
     }
