@@ -14,6 +14,7 @@ pub mod calibration;
 pub mod descriptor;
 mod input;
 pub mod pads;
+pub mod recording;
 mod script;
 mod session;
 

@@ -1,0 +1,272 @@
+//! Recordings of one pad: its raw reports with their times, to a file and back.
+//!
+//! A recording holds what came in, not what was made of it, so a better parser makes a better replay.
+//! The format is specified in `docs/pad-recording.md`.
+
+mod error;
+mod player;
+mod recorder;
+
+use std::fs::File;
+use std::io::Read;
+use std::path::Path;
+
+pub use error::RecordingError;
+pub use player::VirtualPad;
+pub use recorder::Recorder;
+
+use crate::pads::{Bus, PadId};
+use crate::{Button, Buttons, GamepadState};
+
+/// Largest recording accepted, in bytes: many hours.
+pub const MAX_RECORDING_BYTES: usize = 64 << 20;
+/// Longest report in a recording, in bytes.
+pub const MAX_RECORDED_REPORT: usize = 4096;
+/// Latest time in a recording, in microseconds (one day).
+pub const MAX_RECORDING_MICROS: u64 = 86_400_000_000;
+
+const MAGIC: [u8; 8] = *b"PSPADREC";
+const VERSION: u16 = 1;
+const HEADER_LEN: usize = 20;
+const RECORD_LEN: usize = 12;
+const MAX_NAME: usize = 256;
+/// Bytes of a recorded state: four stick axes, two triggers, buttons.
+const STATE_LEN: usize = 28;
+
+/// The pad that was recorded.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct RecordedPad {
+    /// Which kind of pad it is.
+    pub id: PadId,
+    /// Its name, for people; at most 256 bytes are kept.
+    pub name: String,
+    /// Its HID report descriptor; empty for known pads is fine. `None`: not read through HID, its events are states.
+    pub descriptor: Option<Vec<u8>>,
+}
+
+/// One thing that happened to the pad.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum PadEvent<'a> {
+    /// An input report came.
+    Report(&'a [u8]),
+    /// A feature report came that the start-up asked for.
+    Feature(&'a [u8]),
+    /// A raw state came, from a pad that is not read through HID.
+    State(GamepadState),
+    /// The pad was pulled out.
+    Disconnected,
+}
+
+/// A whole recording, checked.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Recording {
+    pad: RecordedPad,
+    /// Time in microseconds and the event's place in `bytes`.
+    events: Vec<(u64, Kind, std::ops::Range<usize>)>,
+    bytes: Vec<u8>,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Kind {
+    Report,
+    Feature,
+    State,
+    Disconnected,
+}
+
+impl Kind {
+    fn of(byte: u8) -> Option<Self> {
+        [Self::Report, Self::Feature, Self::State, Self::Disconnected].get(usize::from(byte)).copied()
+    }
+}
+
+impl Recording {
+    /// Reads a recording and checks all of it.
+    ///
+    /// # Errors
+    /// [`RecordingError`] with the offset of what is wrong.
+    pub fn from_bytes(bytes: Vec<u8>) -> Result<Self, RecordingError> {
+        if bytes.len() > MAX_RECORDING_BYTES {
+            return Err(RecordingError::TooLong { found: bytes.len() });
+        }
+        let (pad, mut at) = read_header(&bytes)?;
+        let mut events = Vec::new();
+        let mut last = 0;
+        while at < bytes.len() {
+            let (micros, kind, body, end) = read_record(&bytes, at, pad.descriptor.is_some())?;
+            if micros < last || micros > MAX_RECORDING_MICROS {
+                return Err(RecordingError::Time { offset: at, previous: last, found: micros });
+            }
+            last = micros;
+            events.push((micros, kind, body));
+            at = end;
+        }
+        Ok(Self { pad, events, bytes })
+    }
+
+    /// Reads a recording from a file.
+    ///
+    /// # Errors
+    /// [`RecordingError::InFile`] naming the file, around what is wrong with it.
+    pub fn load(path: &Path) -> Result<Self, RecordingError> {
+        let in_file = |source| RecordingError::InFile { file: path.to_owned(), source: Box::new(source) };
+        let mut bytes = Vec::new();
+        File::open(path)
+            .and_then(|file| file.take(MAX_RECORDING_BYTES as u64 + 1).read_to_end(&mut bytes))
+            .map_err(|error| in_file(error.into()))?;
+        Self::from_bytes(bytes).map_err(in_file)
+    }
+
+    /// The pad that was recorded.
+    #[must_use]
+    pub fn pad(&self) -> &RecordedPad {
+        &self.pad
+    }
+
+    /// Number of events.
+    #[must_use]
+    pub fn len(&self) -> usize {
+        self.events.len()
+    }
+
+    /// True when nothing happened.
+    #[must_use]
+    pub fn is_empty(&self) -> bool {
+        self.events.is_empty()
+    }
+
+    /// Time of the last event in seconds.
+    #[must_use]
+    pub fn duration(&self) -> f64 {
+        self.events.last().map_or(0.0, |event| seconds(event.0))
+    }
+
+    /// The event with this index and its time in seconds.
+    #[must_use]
+    pub fn event(&self, index: usize) -> Option<(f64, PadEvent<'_>)> {
+        let (micros, kind, body) = self.events.get(index)?;
+        let bytes = &self.bytes[body.clone()];
+        let event = match kind {
+            Kind::Report => PadEvent::Report(bytes),
+            Kind::Feature => PadEvent::Feature(bytes),
+            Kind::State => PadEvent::State(decode_state(bytes)?),
+            Kind::Disconnected => PadEvent::Disconnected,
+        };
+        Some((seconds(*micros), event))
+    }
+}
+
+fn seconds(micros: u64) -> f64 {
+    micros as f64 / 1e6
+}
+
+fn encode_state(state: &GamepadState) -> [u8; STATE_LEN] {
+    let [lx, ly] = state.left_stick;
+    let [rx, ry] = state.right_stick;
+    let mut bytes = [0; STATE_LEN];
+    let axes = [lx, ly, rx, ry, state.left_trigger, state.right_trigger];
+    for (chunk, axis) in bytes.chunks_exact_mut(4).zip(axes) {
+        chunk.copy_from_slice(&axis.to_le_bytes());
+    }
+    bytes[24..].copy_from_slice(&state.buttons.bits().to_le_bytes());
+    bytes
+}
+
+/// `None` for a wrong length, and for values that no pad has.
+fn decode_state(bytes: &[u8]) -> Option<GamepadState> {
+    let bytes: &[u8; STATE_LEN] = bytes.try_into().ok()?;
+    let axis =
+        |i: usize| f32::from_le_bytes([bytes[4 * i], bytes[4 * i + 1], bytes[4 * i + 2], bytes[4 * i + 3]]);
+    let bits = u32::from_le_bytes([bytes[24], bytes[25], bytes[26], bytes[27]]);
+    let mut buttons = Buttons::NONE;
+    for button in Button::ALL {
+        buttons.set(button, bits >> button as u8 & 1 == 1);
+    }
+    let sticks = (0..4).all(|i| (-1.0..=1.0).contains(&axis(i)));
+    let triggers = (4..6).all(|i| (0.0..=1.0).contains(&axis(i)));
+    (sticks && triggers && buttons.bits() == bits).then(|| GamepadState {
+        left_stick: [axis(0), axis(1)],
+        right_stick: [axis(2), axis(3)],
+        left_trigger: axis(4),
+        right_trigger: axis(5),
+        buttons,
+    })
+}
+
+fn u16_of(bytes: &[u8]) -> u16 {
+    u16::from_le_bytes([bytes[0], bytes[1]])
+}
+
+/// `len` bytes from `at`, or where they are missing.
+fn slice(bytes: &[u8], at: usize, len: usize) -> Result<&[u8], RecordingError> {
+    bytes.get(at..at + len).ok_or(RecordingError::Truncated {
+        offset: at,
+        expected: len,
+        found: bytes.len().saturating_sub(at),
+    })
+}
+
+/// Checks the CRC32 that follows `start..end`; returns the offset after it.
+fn check_crc(bytes: &[u8], start: usize, end: usize) -> Result<usize, RecordingError> {
+    let expected = crc32fast::hash(&bytes[start..end]);
+    let found = slice(bytes, end, 4)?;
+    if found != expected.to_le_bytes() {
+        return Err(RecordingError::Checksum { offset: start });
+    }
+    Ok(end + 4)
+}
+
+fn read_header(bytes: &[u8]) -> Result<(RecordedPad, usize), RecordingError> {
+    let head = slice(bytes, 0, HEADER_LEN)?;
+    if head[..8] != MAGIC {
+        return Err(RecordingError::NoRecording);
+    }
+    let version = u16_of(&head[8..]);
+    if version != VERSION {
+        return Err(RecordingError::Version { found: version });
+    }
+    let name_len = usize::from(u16_of(&head[16..]));
+    let descriptor_len = usize::from(u16_of(&head[18..]));
+    let name = slice(bytes, HEADER_LEN, name_len)?;
+    let descriptor = slice(bytes, HEADER_LEN + name_len, descriptor_len)?;
+    let end = check_crc(bytes, 0, HEADER_LEN + name_len + descriptor_len)?;
+    let bus = [Bus::Usb, Bus::Bluetooth, Bus::Other].get(usize::from(head[11])).copied();
+    let field = |name, found: u8| RecordingError::Field { name, found: found.into() };
+    let pad = RecordedPad {
+        id: PadId {
+            vendor: u16_of(&head[12..]),
+            product: u16_of(&head[14..]),
+            bus: bus.ok_or(field("bus", head[11]))?,
+        },
+        name: String::from_utf8(name.to_vec()).map_err(|_| RecordingError::Name)?,
+        descriptor: match head[10] {
+            0 => Some(descriptor.to_vec()),
+            1 => None,
+            other => return Err(field("source", other)),
+        },
+    };
+    Ok((pad, end))
+}
+
+type Record = (u64, Kind, std::ops::Range<usize>, usize);
+
+fn read_record(bytes: &[u8], at: usize, hid: bool) -> Result<Record, RecordingError> {
+    let (micros, rest) = slice(bytes, at, RECORD_LEN)?.split_at(8);
+    let mut time = [0; 8];
+    time.copy_from_slice(micros);
+    let len = usize::from(u16_of(&rest[2..]));
+    let body = at + RECORD_LEN..at + RECORD_LEN + len;
+    slice(bytes, body.start, len)?;
+    let end = check_crc(bytes, at, body.end)?;
+    let event = RecordingError::Event { offset: at, kind: rest[0], len };
+    let kind = Kind::of(rest[0]).ok_or(event)?;
+    let sound = match kind {
+        Kind::Report | Kind::Feature => hid && len <= MAX_RECORDED_REPORT,
+        Kind::State => !hid && decode_state(&bytes[body.clone()]).is_some(),
+        Kind::Disconnected => len == 0,
+    };
+    if !sound {
+        return Err(RecordingError::Event { offset: at, kind: rest[0], len });
+    }
+    Ok((u64::from_le_bytes(time), kind, body, end))
+}

@@ -1,0 +1,89 @@
+//! What can be wrong with a recording.
+
+use std::path::PathBuf;
+
+use super::{MAX_RECORDED_REPORT, MAX_RECORDING_BYTES, MAX_RECORDING_MICROS, VERSION};
+
+/// Why a recording was refused.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum RecordingError {
+    /// The first bytes are not those of a recording.
+    #[error("expected a pad recording, found another kind of file")]
+    NoRecording,
+    /// A version that this build does not know.
+    #[error("format version: expected {VERSION}, found {found}")]
+    Version {
+        /// Version found.
+        found: u16,
+    },
+    /// Longer than any recording.
+    #[error("expected at most {MAX_RECORDING_BYTES} bytes, found {found}")]
+    TooLong {
+        /// Bytes found; for a file at least this many.
+        found: usize,
+    },
+    /// The file ends in the middle of something.
+    #[error("byte {offset}: expected {expected} more bytes, found {found}")]
+    Truncated {
+        /// Where they should be.
+        offset: usize,
+        /// Bytes that should be there.
+        expected: usize,
+        /// Bytes that are.
+        found: usize,
+    },
+    /// The checksum of the header or of an event does not fit.
+    #[error("byte {offset}: expected the checksum of what starts here to fit, found another one")]
+    Checksum {
+        /// Where the header or event starts.
+        offset: usize,
+    },
+    /// A field of the header has a value that does not exist.
+    #[error("header field `{name}`: expected a known value, found {found}")]
+    Field {
+        /// Name of the field.
+        name: &'static str,
+        /// Value found.
+        found: u32,
+    },
+    /// The name is not UTF-8.
+    #[error("header field `name`: expected UTF-8 text, found other bytes")]
+    Name,
+    /// An unknown kind of event, or one whose bytes can't be.
+    #[error(
+        "event at byte {offset}: expected a known kind with its data (a report of at most {MAX_RECORDED_REPORT} \
+         bytes, or a state), found kind {kind} with {len} bytes"
+    )]
+    Event {
+        /// Where the event starts.
+        offset: usize,
+        /// Kind found.
+        kind: u8,
+        /// Length found.
+        len: usize,
+    },
+    /// Times go backwards, or past the limit.
+    #[error(
+        "event at byte {offset}: expected a time from {previous} to {MAX_RECORDING_MICROS} us, found {found} us"
+    )]
+    Time {
+        /// Where the event starts.
+        offset: usize,
+        /// Time of the event before, in microseconds.
+        previous: u64,
+        /// Time found, in microseconds.
+        found: u64,
+    },
+    /// The file can't be read or written.
+    #[error("cannot be read or written: {0}")]
+    Io(#[from] std::io::Error),
+    /// Any of the others, in a named file.
+    #[error("{}: {source}", file.display())]
+    InFile {
+        /// The recording's file.
+        file: PathBuf,
+        /// What is wrong in it.
+        source: Box<RecordingError>,
+    },
+}
