@@ -4,6 +4,7 @@
 //! The format is specified in `docs/pad-recording.md`.
 
 mod error;
+mod plain;
 mod player;
 mod recorder;
 
@@ -15,8 +16,9 @@ pub use error::RecordingError;
 pub use player::VirtualPad;
 pub use recorder::Recorder;
 
+use crate::GamepadState;
+use crate::calibration::Calibration;
 use crate::pads::{Bus, PadId};
-use crate::{Button, Buttons, GamepadState};
 
 /// Largest recording accepted, in bytes: many hours.
 pub const MAX_RECORDING_BYTES: usize = 64 << 20;
@@ -30,8 +32,6 @@ const VERSION: u16 = 1;
 const HEADER_LEN: usize = 20;
 const RECORD_LEN: usize = 12;
 const MAX_NAME: usize = 256;
-/// Bytes of a recorded state: four stick axes, two triggers, buttons.
-const STATE_LEN: usize = 28;
 
 /// The pad that was recorded.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -55,6 +55,8 @@ pub enum PadEvent<'a> {
     State(GamepadState),
     /// The pad was pulled out.
     Disconnected,
+    /// The pad's calibration was set to this.
+    Calibration(Calibration),
 }
 
 /// A whole recording, checked.
@@ -72,11 +74,14 @@ enum Kind {
     Feature,
     State,
     Disconnected,
+    Calibration,
 }
 
 impl Kind {
     fn of(byte: u8) -> Option<Self> {
-        [Self::Report, Self::Feature, Self::State, Self::Disconnected].get(usize::from(byte)).copied()
+        [Self::Report, Self::Feature, Self::State, Self::Disconnected, Self::Calibration]
+            .get(usize::from(byte))
+            .copied()
     }
 }
 
@@ -149,8 +154,9 @@ impl Recording {
         let event = match kind {
             Kind::Report => PadEvent::Report(bytes),
             Kind::Feature => PadEvent::Feature(bytes),
-            Kind::State => PadEvent::State(decode_state(bytes)?),
+            Kind::State => PadEvent::State(plain::decode_state(bytes)?),
             Kind::Disconnected => PadEvent::Disconnected,
+            Kind::Calibration => PadEvent::Calibration(plain::decode_calibration(bytes)?),
         };
         Some((seconds(*micros), event))
     }
@@ -158,39 +164,6 @@ impl Recording {
 
 fn seconds(micros: u64) -> f64 {
     micros as f64 / 1e6
-}
-
-fn encode_state(state: &GamepadState) -> [u8; STATE_LEN] {
-    let [lx, ly] = state.left_stick;
-    let [rx, ry] = state.right_stick;
-    let mut bytes = [0; STATE_LEN];
-    let axes = [lx, ly, rx, ry, state.left_trigger, state.right_trigger];
-    for (chunk, axis) in bytes.chunks_exact_mut(4).zip(axes) {
-        chunk.copy_from_slice(&axis.to_le_bytes());
-    }
-    bytes[24..].copy_from_slice(&state.buttons.bits().to_le_bytes());
-    bytes
-}
-
-/// `None` for a wrong length, and for values that no pad has.
-fn decode_state(bytes: &[u8]) -> Option<GamepadState> {
-    let bytes: &[u8; STATE_LEN] = bytes.try_into().ok()?;
-    let axis =
-        |i: usize| f32::from_le_bytes([bytes[4 * i], bytes[4 * i + 1], bytes[4 * i + 2], bytes[4 * i + 3]]);
-    let bits = u32::from_le_bytes([bytes[24], bytes[25], bytes[26], bytes[27]]);
-    let mut buttons = Buttons::NONE;
-    for button in Button::ALL {
-        buttons.set(button, bits >> button as u8 & 1 == 1);
-    }
-    let sticks = (0..4).all(|i| (-1.0..=1.0).contains(&axis(i)));
-    let triggers = (4..6).all(|i| (0.0..=1.0).contains(&axis(i)));
-    (sticks && triggers && buttons.bits() == bits).then(|| GamepadState {
-        left_stick: [axis(0), axis(1)],
-        right_stick: [axis(2), axis(3)],
-        left_trigger: axis(4),
-        right_trigger: axis(5),
-        buttons,
-    })
 }
 
 fn u16_of(bytes: &[u8]) -> u16 {
@@ -262,8 +235,9 @@ fn read_record(bytes: &[u8], at: usize, hid: bool) -> Result<Record, RecordingEr
     let kind = Kind::of(rest[0]).ok_or(event)?;
     let sound = match kind {
         Kind::Report | Kind::Feature => hid && len <= MAX_RECORDED_REPORT,
-        Kind::State => !hid && decode_state(&bytes[body.clone()]).is_some(),
+        Kind::State => !hid && plain::decode_state(&bytes[body.clone()]).is_some(),
         Kind::Disconnected => len == 0,
+        Kind::Calibration => plain::decode_calibration(&bytes[body.clone()]).is_some(),
     };
     if !sound {
         return Err(RecordingError::Event { offset: at, kind: rest[0], len });

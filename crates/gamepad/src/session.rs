@@ -36,6 +36,8 @@ pub struct PadSession {
     calibration: Calibration,
     measuring: Option<(f64, RestCalibrator)>,
     outcome: Option<Result<(), NotAtRest>>,
+    /// The calibration was measured or set: connecting again measures no more.
+    calibrated: bool,
     refused: u64,
     accepted: u64,
 }
@@ -68,6 +70,7 @@ impl PadSession {
             calibration: Calibration::default(),
             measuring: None,
             outcome: None,
+            calibrated: false,
             refused: 0,
             accepted: 0,
         }
@@ -149,6 +152,7 @@ impl PadSession {
     pub fn set_calibration(&mut self, calibration: Calibration) {
         self.zones = calibration.zones;
         self.calibration = calibration;
+        self.calibrated = true;
         self.measuring = None;
     }
 
@@ -167,7 +171,7 @@ impl PadSession {
     fn observe(&mut self, before: GamepadState, update: Update, time_secs: f64) {
         self.accepted += 1;
         if update == Update::Controls {
-            if !self.present {
+            if !self.present && !self.calibrated {
                 self.calibrate(time_secs);
             }
             self.present = true;
@@ -188,6 +192,7 @@ impl PadSession {
         let outcome = calibrator.finish(self.zones);
         if let Ok(calibration) = outcome {
             self.calibration = calibration;
+            self.calibrated = true;
         }
         self.outcome = Some(outcome.map(|_| ()));
         self.measuring = None;

@@ -2,6 +2,7 @@
 
 use std::path::Path;
 
+use gamepad::calibration::{Calibration, DeadZones, Rest, Zone};
 use gamepad::recording::{PadEvent, RecordedPad, Recorder, Recording, RecordingError, VirtualPad};
 use gamepad::{Bus, Button, Buttons, GamepadState, PadId, PadReport};
 use proptest::prelude::*;
@@ -96,6 +97,32 @@ fn states_of_pads_without_hid() {
     assert!(matches!(
         Recording::from_bytes(recorder.finish().unwrap()),
         Err(RecordingError::Event { kind: 2, .. })
+    ));
+}
+
+#[test]
+fn a_recorded_calibration_is_used_instead_of_a_new_one() {
+    let zone = Zone::new(0.3, 0.8).unwrap();
+    let calibration = Calibration {
+        rest: Rest { left_stick: [0.1, -0.1], left_trigger: 0.05, ..Rest::default() },
+        zones: DeadZones { left_stick: zone, ..DeadZones::default() },
+    };
+    let mut recorder = Recorder::new(Vec::new(), &pad()).unwrap();
+    recorder.record(0.0, PadEvent::Calibration(calibration)).unwrap();
+    for step in 0..300 {
+        recorder.record(f64::from(step) * 0.004, PadEvent::Report(&report(160, false))).unwrap();
+    }
+    let bytes = recorder.finish().unwrap();
+    let recording = Recording::from_bytes(bytes).unwrap();
+    assert_eq!(recording.event(0), Some((0.0, PadEvent::Calibration(calibration))));
+    let played = VirtualPad::new(recording).unwrap().report_at(1.1);
+    assert_eq!(played.state, calibration.state(&played.input.raw));
+    let mut recorder = Recorder::new(Vec::new(), &pad()).unwrap();
+    let bad = Calibration { rest: Rest { left_trigger: f32::NAN, ..Rest::default() }, ..calibration };
+    recorder.record(0.0, PadEvent::Calibration(bad)).unwrap();
+    assert!(matches!(
+        Recording::from_bytes(recorder.finish().unwrap()),
+        Err(RecordingError::Event { kind: 4, .. })
     ));
 }
 

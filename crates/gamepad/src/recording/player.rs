@@ -57,6 +57,7 @@ impl VirtualPad {
                 PadEvent::Feature(report) => self.session.accept_feature(report),
                 PadEvent::State(state) => self.session.accept_state(state, event_secs),
                 PadEvent::Disconnected => self.session.disconnect(),
+                PadEvent::Calibration(calibration) => self.session.set_calibration(calibration),
             }
             self.next += 1;
         }

@@ -4,7 +4,7 @@ use std::io::Write;
 
 use super::{
     HEADER_LEN, Kind, MAGIC, MAX_NAME, MAX_RECORDED_REPORT, MAX_RECORDING_MICROS, PadEvent, RECORD_LEN,
-    RecordedPad, RecordingError, VERSION, encode_state,
+    RecordedPad, RecordingError, VERSION, plain,
 };
 use crate::descriptor::MAX_DESCRIPTOR_BYTES;
 use crate::pads::Bus;
@@ -53,15 +53,19 @@ impl<W: Write> Recorder<W> {
     /// [`RecordingError::Io`] when the output fails; [`RecordingError::Event`] for a report that is too long.
     pub fn record(&mut self, time_secs: f64, event: PadEvent<'_>) -> Result<(), RecordingError> {
         let micros = ((time_secs * 1e6).round() as u64).clamp(self.last_micros, MAX_RECORDING_MICROS);
-        let state;
+        let (state, calibration);
         let (kind, bytes): (Kind, &[u8]) = match event {
             PadEvent::Report(bytes) => (Kind::Report, bytes),
             PadEvent::Feature(bytes) => (Kind::Feature, bytes),
             PadEvent::State(found) => {
-                state = encode_state(&found);
+                state = plain::encode_state(&found);
                 (Kind::State, &state)
             }
             PadEvent::Disconnected => (Kind::Disconnected, &[]),
+            PadEvent::Calibration(found) => {
+                calibration = plain::encode_calibration(&found);
+                (Kind::Calibration, &calibration)
+            }
         };
         if bytes.len() > MAX_RECORDED_REPORT {
             return Err(RecordingError::Event { offset: 0, kind: kind as u8, len: bytes.len() });
