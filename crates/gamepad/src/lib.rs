@@ -10,14 +10,20 @@
 //! # Ok::<(), gamepad::ScriptError>(())
 //! ```
 
+pub mod backend;
 pub mod calibration;
 pub mod descriptor;
+pub mod device;
+pub mod doctor;
+mod gamepads;
 mod input;
 pub mod pads;
 pub mod recording;
 mod script;
 mod session;
+pub mod udev;
 
+pub use gamepads::{Gamepads, Pad};
 pub use input::{Battery, Motion, PadInput, PadReport, Power, ReportError, Touch, Update};
 pub use pads::{Bus, NoGamepad, PadId};
 pub use policy_core::{Button, Buttons, GamepadState};

@@ -114,7 +114,7 @@ impl Recording {
     /// # Errors
     /// [`RecordingError::InFile`] naming the file, around what is wrong with it.
     pub fn load(path: &Path) -> Result<Self, RecordingError> {
-        let in_file = |source| RecordingError::InFile { file: path.to_owned(), source: Box::new(source) };
+        let in_file = |cause| RecordingError::InFile { file: path.to_owned(), cause: Box::new(cause) };
         let mut bytes = Vec::new();
         File::open(path)
             .and_then(|file| file.take(MAX_RECORDING_BYTES as u64 + 1).read_to_end(&mut bytes))

@@ -52,7 +52,7 @@ impl Script {
     /// # Errors
     /// [`ScriptError::InFile`] naming the file, around what is wrong with it.
     pub fn load(path: &Path) -> Result<Self, ScriptError> {
-        let in_file = |source| ScriptError::InFile { file: path.to_owned(), source: Box::new(source) };
+        let in_file = |cause| ScriptError::InFile { file: path.to_owned(), cause: Box::new(cause) };
         let text = parse::read_limited(path).map_err(in_file)?;
         Self::from_ron(&text).map_err(in_file)
     }

@@ -30,7 +30,7 @@ pub(crate) fn centred(value: i32, low: i32, centre: i32, high: i32) -> f32 {
 
 /// A stick of two bytes, centre 128, y down, as Sony's pads report it.
 pub(crate) fn stick_u8(x: u8, y: u8) -> [f32; 2] {
-    [centred(x.into(), 1, 128, 255), -centred(y.into(), 1, 128, 255)]
+    [centred(x.into(), 1, 128, 255), 0.0 - centred(y.into(), 1, 128, 255)]
 }
 
 pub(crate) fn trigger_u8(value: u8) -> f32 {

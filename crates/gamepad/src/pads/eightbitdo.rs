@@ -97,7 +97,7 @@ impl EightBitDo {
 
 /// Two bytes with centre 127, y down.
 fn stick(x: u8, y: u8) -> [f32; 2] {
-    [centred(x.into(), 0, 127, 255), -centred(y.into(), 0, 127, 255)]
+    [centred(x.into(), 0, 127, 255), 0.0 - centred(y.into(), 0, 127, 255)]
 }
 
 /// Seven bits of percent; the top bit: charging.

@@ -20,7 +20,7 @@ use crate::{Button, Buttons, GamepadState, PadInput, ReportError, Update};
 pub enum NoGamepad {
     /// The descriptor is broken.
     #[error("report descriptor: {0}")]
-    Descriptor(#[from] DescriptorError),
+    Descriptor(DescriptorError),
     /// The descriptor has no stick and no button in a game pad or joystick collection.
     #[error(
         "report descriptor: expected a game pad or joystick with a stick or buttons, found {fields} other fields"
@@ -29,6 +29,12 @@ pub enum NoGamepad {
         /// Fields found.
         fields: usize,
     },
+}
+
+impl From<DescriptorError> for NoGamepad {
+    fn from(error: DescriptorError) -> Self {
+        Self::Descriptor(error)
+    }
 }
 
 /// A pad read through its report descriptor.
@@ -121,9 +127,9 @@ fn apply(field: &Field, control: Control, value: i32, state: &mut GamepadState, 
     let axis = 2.0 * fraction - 1.0;
     match control {
         Control::LeftX => state.left_stick[0] = axis,
-        Control::LeftY => state.left_stick[1] = -axis,
+        Control::LeftY => state.left_stick[1] = 0.0 - axis,
         Control::RightX => state.right_stick[0] = axis,
-        Control::RightY => state.right_stick[1] = -axis,
+        Control::RightY => state.right_stick[1] = 0.0 - axis,
         Control::LeftPull => state.left_trigger = fraction,
         Control::RightPull => state.right_trigger = fraction,
         Control::SharedPull => {

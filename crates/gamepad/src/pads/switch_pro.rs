@@ -181,8 +181,8 @@ fn simple(report: &[u8; SIMPLE_LEN]) -> GamepadState {
     let axis = |at| centred(u16_at(report, at).into(), 0, 0x8000, 0xffff);
     let pull = |button| if buttons.contains(button) { 1.0 } else { 0.0 };
     GamepadState {
-        left_stick: [axis(4), -axis(6)],
-        right_stick: [axis(8), -axis(10)],
+        left_stick: [axis(4), 0.0 - axis(6)],
+        right_stick: [axis(8), 0.0 - axis(10)],
         left_trigger: pull(B::LeftTrigger),
         right_trigger: pull(B::RightTrigger),
         buttons,

@@ -104,8 +104,8 @@ fn controls(report: &[u8; OLD_LEN], mut buttons: Buttons) -> GamepadState {
     let pull = |at| f32::from(u16_at(report, at).min(1023)) / 1023.0;
     press_hat(report[13].wrapping_sub(1), &mut buttons);
     let mut state = GamepadState {
-        left_stick: [axis(1), -axis(3)],
-        right_stick: [axis(5), -axis(7)],
+        left_stick: [axis(1), 0.0 - axis(3)],
+        right_stick: [axis(5), 0.0 - axis(7)],
         left_trigger: pull(9),
         right_trigger: pull(11),
         buttons,

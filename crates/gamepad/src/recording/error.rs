@@ -77,13 +77,19 @@ pub enum RecordingError {
     },
     /// The file can't be read or written.
     #[error("cannot be read or written: {0}")]
-    Io(#[from] std::io::Error),
+    Io(std::io::Error),
     /// Any of the others, in a named file.
-    #[error("{}: {source}", file.display())]
+    #[error("{}: {cause}", file.display())]
     InFile {
         /// The recording's file.
         file: PathBuf,
         /// What is wrong in it.
-        source: Box<RecordingError>,
+        cause: Box<RecordingError>,
     },
+}
+
+impl From<std::io::Error> for RecordingError {
+    fn from(error: std::io::Error) -> Self {
+        Self::Io(error)
+    }
 }

@@ -34,15 +34,21 @@ pub enum ScriptError {
     },
     /// The file can't be read.
     #[error("cannot be read: {0}")]
-    Unreadable(#[from] std::io::Error),
+    Unreadable(std::io::Error),
     /// Any of the others, in a named file.
-    #[error("{}: {source}", file.display())]
+    #[error("{}: {cause}", file.display())]
     InFile {
         /// The script's file.
         file: PathBuf,
         /// What is wrong in it.
-        source: Box<ScriptError>,
+        cause: Box<ScriptError>,
     },
+}
+
+impl From<std::io::Error> for ScriptError {
+    fn from(error: std::io::Error) -> Self {
+        Self::Unreadable(error)
+    }
 }
 
 /// A value that RON can read but a script can't have; shown inside [`ScriptError::Malformed`].

@@ -1,0 +1,173 @@
+//! `pad`: what is connected and what is wrong, udev rules, recording and playing of pads.
+
+use std::fs::File;
+use std::io::{BufWriter, Write as _};
+use std::path::{Path, PathBuf};
+use std::process::ExitCode;
+use std::time::{Duration, Instant};
+
+use anyhow::{Context as _, Result, bail};
+use clap::{Args, Parser, Subcommand};
+use gamepad::doctor::{self, SystemFacts};
+use gamepad::pads::PadOutput;
+use gamepad::recording::{Recording, VirtualPad};
+use gamepad::{Gamepads, udev};
+
+/// Time between two polls: a control tick.
+const TICK: Duration = Duration::from_millis(33);
+
+/// Gamepads: what is connected, what is wrong, recording and playing.
+#[derive(Debug, Parser)]
+#[command(name = "pad", arg_required_else_help = true)]
+struct Cli {
+    #[command(subcommand)]
+    verb: Verb,
+}
+
+#[derive(Debug, Subcommand)]
+enum Verb {
+    /// List connected pads, their back ends and live values, what is wrong and what to do.
+    ///
+    /// Ends with 0 when a pad works and nothing is wrong, else with 1.
+    Doctor(DoctorArgs),
+    /// Print the udev rules for all known pads, ready to install.
+    Udev,
+    /// Record the pad that is used first.
+    Record {
+        /// Where to write the recording.
+        file: PathBuf,
+        /// How long to record.
+        #[arg(long, default_value_t = 60.0)]
+        seconds: f64,
+    },
+    /// Print the states of a recording at 30 Hz.
+    Play {
+        /// The recording.
+        file: PathBuf,
+    },
+    /// Make the active pad rumble and light up for a second.
+    Rumble,
+}
+
+#[derive(Debug, Args)]
+struct DoctorArgs {
+    /// How long to look and show live values.
+    #[arg(long, default_value_t = 3.0)]
+    seconds: f64,
+}
+
+fn main() -> Result<ExitCode> {
+    match Cli::parse().verb {
+        Verb::Doctor(DoctorArgs { seconds }) => run_doctor(seconds),
+        Verb::Udev => {
+            print!("{}", udev::rules());
+            eprintln!(
+                "Install with: pad udev | sudo tee {}; sudo udevadm control --reload; sudo udevadm trigger",
+                udev::RULES_PATH
+            );
+            Ok(ExitCode::SUCCESS)
+        }
+        Verb::Record { file, seconds } => record(&file, seconds),
+        Verb::Play { file } => play(&file),
+        Verb::Rumble => rumble(),
+    }
+}
+
+fn open() -> (Gamepads, Vec<String>) {
+    let (gamepads, errors) = Gamepads::with_all_backends();
+    (gamepads, errors.iter().map(ToString::to_string).collect())
+}
+
+/// Polls for a time and calls `each` after every poll, until it says that it is done.
+fn watch(
+    gamepads: &mut Gamepads,
+    seconds: f64,
+    mut each: impl FnMut(&mut Gamepads) -> Result<bool>,
+) -> Result<()> {
+    let length = Duration::try_from_secs_f64(seconds).context("--seconds: expected a length of time")?;
+    let start = Instant::now();
+    while start.elapsed() < length {
+        gamepads.poll();
+        if each(gamepads)? {
+            break;
+        }
+        std::thread::sleep(TICK);
+    }
+    Ok(())
+}
+
+fn run_doctor(seconds: f64) -> Result<ExitCode> {
+    let (mut gamepads, errors) = open();
+    eprintln!("Looking for {seconds} s. Put pads down first, then press buttons and move sticks.");
+    watch(&mut gamepads, seconds, |gamepads| {
+        if let Some(pad) = gamepads.active() {
+            eprint!("\r{:<118}", doctor::values(&gamepads.report_of(pad).state));
+        }
+        Ok(false)
+    })?;
+    eprintln!();
+    let (text, sound) = doctor::report(&gamepads, &SystemFacts::of_this_system(errors));
+    print!("{text}");
+    if gamepads.problems().iter().any(|(_, problem)| doctor::needs_rules(problem)) {
+        println!("The rules for all known pads: pad udev | sudo tee {}", udev::RULES_PATH);
+    }
+    Ok(if sound { ExitCode::SUCCESS } else { ExitCode::FAILURE })
+}
+
+fn record(file: &Path, seconds: f64) -> Result<ExitCode> {
+    let (mut gamepads, errors) = open();
+    let mut key = None;
+    eprintln!("Press a button on the pad to record.");
+    watch(&mut gamepads, 30.0, |gamepads| {
+        let active = gamepads.active().filter(|pad| pad.session.counts().0 > 0);
+        key = active.map(|pad| (pad.device.key, pad.device.name.clone()));
+        Ok(key.is_some())
+    })?;
+    let Some((key, name)) = key else {
+        bail!("no pad reported anything for 30 s; `pad doctor` says why ({} back ends failed)", errors.len());
+    };
+    let out = File::create(file).with_context(|| format!("{}: cannot be written", file.display()))?;
+    gamepads.record(key, Box::new(BufWriter::new(out)))?;
+    eprintln!("Recording {name} for {seconds} s to {}.", file.display());
+    watch(&mut gamepads, seconds, |gamepads| Ok(gamepads.pad_mut(key).is_none()))?;
+    if let Some(pad) = gamepads.pad_mut(key) {
+        pad.stop_recording().with_context(|| format!("{}: cannot be written", file.display()))?;
+    } else {
+        eprintln!("The pad was pulled out; the recording ends there.");
+    }
+    Ok(ExitCode::SUCCESS)
+}
+
+fn play(file: &Path) -> Result<ExitCode> {
+    let recording = Recording::load(file)?;
+    let duration = recording.duration();
+    let mut pad = VirtualPad::new(recording).with_context(|| format!("{}", file.display()))?;
+    let mut out = std::io::stdout().lock();
+    for tick in 0.. {
+        let time_secs = f64::from(tick) / 30.0;
+        let report = pad.report_at(time_secs);
+        writeln!(out, "{time_secs:8.3}  {}", doctor::values(&report.state))?;
+        if time_secs >= duration {
+            break;
+        }
+    }
+    let (accepted, refused) = pad.counts();
+    eprintln!("{accepted} reports read, {refused} refused.");
+    Ok(ExitCode::SUCCESS)
+}
+
+fn rumble() -> Result<ExitCode> {
+    let (mut gamepads, _) = open();
+    watch(&mut gamepads, 2.0, |gamepads| Ok(gamepads.active().is_some()))?;
+    let Some(key) = gamepads.active().map(|pad| pad.device.key) else {
+        bail!("no pad found; try `pad doctor`")
+    };
+    let strong = PadOutput { low_rumble: 0.6, high_rumble: 0.6, light: [0, 120, 255] };
+    if !gamepads.set_output(key, &strong) {
+        bail!("this pad takes no rumble through this back end");
+    }
+    watch(&mut gamepads, 1.0, |_| Ok(false))?;
+    gamepads.set_output(key, &PadOutput { light: strong.light, ..PadOutput::default() });
+    watch(&mut gamepads, 0.2, |_| Ok(false))?;
+    Ok(ExitCode::SUCCESS)
+}

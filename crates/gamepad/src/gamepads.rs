@@ -1,0 +1,203 @@
+//! All connected pads: hot-plug, no pad twice, one of them active.
+//!
+//! Owns the back ends and one [`PadSession`] for each device. Everything but [`Gamepads::poll`] is pure, so tests
+//! apply events by hand.
+
+mod pad;
+
+use std::io::Write;
+use std::time::Instant;
+
+pub use pad::Pad;
+
+use crate::backend::{BackendError, PadBackend};
+use crate::device::{DeviceEvent, DeviceInfo, DeviceKey, Problem, Source};
+use crate::pads::{Bus, MAX_OUTPUT_LEN, PadOutput};
+use crate::recording::RecordingError;
+use crate::{GamepadState, PadReport, PadSession};
+
+/// Every pad that is connected, through all back ends.
+pub struct Gamepads {
+    start: Instant,
+    backends: Vec<Box<dyn PadBackend>>,
+    /// Reused by every poll.
+    events: Vec<(Instant, DeviceEvent)>,
+    pads: Vec<Pad>,
+    problems: Vec<(DeviceInfo, Problem)>,
+    active: Option<DeviceKey>,
+    now_secs: f64,
+}
+
+impl Gamepads {
+    /// No pads and these back ends.
+    #[must_use]
+    pub fn new(backends: Vec<Box<dyn PadBackend>>) -> Self {
+        Self {
+            start: Instant::now(),
+            backends,
+            events: Vec::new(),
+            pads: Vec::new(),
+            problems: Vec::new(),
+            active: None,
+            now_secs: 0.0,
+        }
+    }
+
+    /// Every back end that this build has and that starts, and why the others did not.
+    #[must_use]
+    pub fn with_all_backends() -> (Self, Vec<BackendError>) {
+        #[allow(unused_mut, reason = "a build without back ends")]
+        let (mut backends, mut errors): (Vec<Box<dyn PadBackend>>, Vec<BackendError>) = Default::default();
+        #[cfg(feature = "hidapi")]
+        match crate::backend::HidBackend::start() {
+            Ok(backend) => backends.push(Box::new(backend)),
+            Err(error) => errors.push(error),
+        }
+        #[cfg(feature = "gilrs")]
+        match crate::backend::GilrsBackend::start() {
+            Ok(backend) => backends.push(Box::new(backend)),
+            Err(error) => errors.push(error),
+        }
+        (Self::new(backends), errors)
+    }
+
+    /// Takes in everything that happened since the last call; once per control tick is enough. Never waits.
+    pub fn poll(&mut self) {
+        let mut events = std::mem::take(&mut self.events);
+        for backend in &mut self.backends {
+            backend.poll_into(&mut events);
+        }
+        for (time, event) in events.drain(..) {
+            self.apply(time.saturating_duration_since(self.start).as_secs_f64(), event);
+        }
+        self.events = events;
+        self.now_secs = self.now_secs.max(self.start.elapsed().as_secs_f64());
+    }
+
+    /// Takes in one event that came `time_secs` after the start.
+    pub fn apply(&mut self, time_secs: f64, event: DeviceEvent) {
+        self.now_secs = self.now_secs.max(time_secs);
+        let now_secs = self.now_secs;
+        match event {
+            DeviceEvent::Connected { device, descriptor } => self.connect(device, descriptor),
+            DeviceEvent::Unusable { device, problem } => self.problems.push((device, problem)),
+            DeviceEvent::Disconnected(key) => {
+                self.pads.retain(|pad| pad.device.key != key);
+                self.problems.retain(|(device, _)| device.key != key);
+            }
+            DeviceEvent::Report(key, report) => self.with_pad(key, |pad| pad.report(&report, now_secs)),
+            DeviceEvent::Feature(key, report) => self.with_pad(key, |pad| pad.feature(&report, now_secs)),
+            DeviceEvent::State(key, state) => self.with_pad(key, |pad| pad.state(state, now_secs)),
+        }
+    }
+
+    fn connect(&mut self, device: DeviceInfo, descriptor: Option<Vec<u8>>) {
+        let session = match &descriptor {
+            Some(descriptor) => PadSession::new(device.id, descriptor),
+            None => Ok(PadSession::of_states()),
+        };
+        match session {
+            Ok(session) => self.pads.push(Pad::new(device, descriptor, session)),
+            Err(error) => self.problems.push((device, error.into())),
+        }
+    }
+
+    /// Runs `act` on a pad; a pad whose controls left neutral becomes the active one.
+    fn with_pad(&mut self, key: DeviceKey, act: impl FnOnce(&mut Pad)) {
+        let now_secs = self.now_secs;
+        let Some(index) = self.pads.iter().position(|pad| pad.device.key == key) else { return };
+        act(&mut self.pads[index]);
+        if self.pads[index].session.report_at(now_secs).state != GamepadState::default()
+            && self.is_shown(index)
+        {
+            self.active = Some(key);
+        }
+    }
+
+    /// The pads, each physical pad once.
+    pub fn pads(&self) -> impl Iterator<Item = &Pad> {
+        self.pads.iter().enumerate().filter(|(index, _)| self.is_shown(*index)).map(|(_, pad)| pad)
+    }
+
+    /// Devices that are left out because the same pad is connected another way.
+    pub fn duplicates(&self) -> impl Iterator<Item = &Pad> {
+        self.pads.iter().enumerate().filter(|(index, _)| !self.is_shown(*index)).map(|(_, pad)| pad)
+    }
+
+    /// Devices that look like pads but can't be read, and why.
+    #[must_use]
+    pub fn problems(&self) -> &[(DeviceInfo, Problem)] {
+        &self.problems
+    }
+
+    /// The pad that was used last; the first one if none was.
+    #[must_use]
+    pub fn active(&self) -> Option<&Pad> {
+        let used = self.pads().find(|pad| Some(pad.device.key) == self.active);
+        used.or_else(|| self.pads().next())
+    }
+
+    /// What a game reads: the active pad's report, neutral without one.
+    #[must_use]
+    pub fn report(&self) -> PadReport {
+        self.active().map(|pad| self.report_of(pad)).unwrap_or_default()
+    }
+
+    /// The report of one pad, as of the last poll.
+    #[must_use]
+    pub fn report_of(&self, pad: &Pad) -> PadReport {
+        pad.session.report_at(self.now_secs)
+    }
+
+    /// Seconds since the start, as of the last poll.
+    #[must_use]
+    pub fn now_secs(&self) -> f64 {
+        self.now_secs
+    }
+
+    /// A pad by its key, to calibrate it or set its dead zones.
+    pub fn pad_mut(&mut self, key: DeviceKey) -> Option<&mut Pad> {
+        self.pads.iter_mut().find(|pad| pad.device.key == key)
+    }
+
+    /// Makes a pad rumble and light up; false when it can't.
+    pub fn set_output(&mut self, key: DeviceKey, output: &PadOutput) -> bool {
+        let Some(pad) = self.pads.iter_mut().find(|pad| pad.device.key == key) else { return false };
+        let mut report = [0; MAX_OUTPUT_LEN];
+        let Some(len) = pad.encode_into(output, &mut report) else { return false };
+        self.backends.iter_mut().any(|backend| backend.send(key, &report[..len]))
+    }
+
+    /// Records a pad from now on, into `out`; replaces a running recording.
+    ///
+    /// # Errors
+    /// [`RecordingError::Io`] when `out` fails at once.
+    pub fn record(&mut self, key: DeviceKey, out: Box<dyn Write + Send>) -> Result<bool, RecordingError> {
+        let now_secs = self.now_secs;
+        self.pad_mut(key).map_or(Ok(false), |pad| pad.record(out, now_secs).map(|()| true))
+    }
+
+    /// False for a device that is a worse way to a pad that is also connected another way: the same serial number
+    /// (a cable goes before Bluetooth), or gilrs where HID has the same kind of pad.
+    fn is_shown(&self, index: usize) -> bool {
+        let rank =
+            |pad: &Pad| (pad.device.source == Source::Gilrs, pad.device.id.bus != Bus::Usb, pad.device.key);
+        let pad = &self.pads[index];
+        !self.pads.iter().any(|other| is_same_pad(&pad.device, &other.device) && rank(other) < rank(pad))
+    }
+}
+
+fn is_same_pad(a: &DeviceInfo, b: &DeviceInfo) -> bool {
+    let kind = |device: &DeviceInfo| (device.id.vendor, device.id.product);
+    if a.key == b.key || kind(a) != kind(b) {
+        return false;
+    }
+    let letters = |serial: &str| -> String {
+        serial.chars().filter(char::is_ascii_alphanumeric).map(|c| c.to_ascii_lowercase()).collect()
+    };
+    match (a.source == b.source, &a.serial, &b.serial) {
+        (false, ..) => true,
+        (true, Some(first), Some(second)) => letters(first) == letters(second),
+        (true, ..) => false,
+    }
+}

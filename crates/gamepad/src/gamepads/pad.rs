@@ -1,0 +1,134 @@
+//! One connected pad: its device, its session, its output, its recording.
+
+use std::io::Write;
+
+use crate::device::DeviceInfo;
+use crate::pads::{MAX_OUTPUT_LEN, Model, OutputEncoder, PadOutput};
+use crate::recording::{PadEvent, RecordedPad, Recorder, RecordingError};
+use crate::{GamepadState, PadSession, ReportError};
+
+/// Reports that set the parser up and must be in a recording that starts later.
+const MOST_SET_UP: usize = 16;
+
+/// One connected pad.
+pub struct Pad {
+    /// The device.
+    pub device: DeviceInfo,
+    /// Its state over time; calibrate it here.
+    pub session: PadSession,
+    descriptor: Option<Vec<u8>>,
+    encoder: Option<OutputEncoder>,
+    /// Feature reports, and replies with calibrations.
+    set_up: Vec<(bool, Box<[u8]>)>,
+    last_error: Option<ReportError>,
+    recorder: Option<(f64, Recorder<Box<dyn Write + Send>>)>,
+    recording_error: Option<RecordingError>,
+}
+
+impl Pad {
+    pub(super) fn new(device: DeviceInfo, descriptor: Option<Vec<u8>>, session: PadSession) -> Self {
+        let model = Model::of(device.id).filter(|_| descriptor.is_some());
+        let encoder = model.map(|model| OutputEncoder::new(model, device.id.bus));
+        Self {
+            device,
+            session,
+            descriptor,
+            encoder,
+            set_up: Vec::new(),
+            last_error: None,
+            recorder: None,
+            recording_error: None,
+        }
+    }
+
+    /// The last report that was refused, and why.
+    #[must_use]
+    pub fn last_error(&self) -> Option<ReportError> {
+        self.last_error
+    }
+
+    /// True for pads that can rumble.
+    #[must_use]
+    pub fn has_output(&self) -> bool {
+        self.encoder.is_some()
+    }
+
+    /// Ends the recording and flushes it; true when there was one.
+    ///
+    /// # Errors
+    /// [`RecordingError`] when the output failed now or before.
+    pub fn stop_recording(&mut self) -> Result<bool, RecordingError> {
+        if let Some(error) = self.recording_error.take() {
+            self.recorder = None;
+            return Err(error);
+        }
+        match self.recorder.take() {
+            Some((_, recorder)) => recorder.finish().map(|_| true),
+            None => Ok(false),
+        }
+    }
+
+    pub(super) fn record(&mut self, out: Box<dyn Write + Send>, now_secs: f64) -> Result<(), RecordingError> {
+        let pad = RecordedPad {
+            id: self.device.id,
+            name: self.device.name.clone(),
+            descriptor: self.descriptor.clone(),
+        };
+        let mut recorder = Recorder::new(out, &pad)?;
+        for (feature, report) in &self.set_up {
+            let event = if *feature { PadEvent::Feature(report) } else { PadEvent::Report(report) };
+            recorder.record(0.0, event)?;
+        }
+        recorder.record(0.0, PadEvent::Calibration(*self.session.calibration()))?;
+        self.recorder = Some((now_secs, recorder));
+        self.recording_error = None;
+        Ok(())
+    }
+
+    pub(super) fn report(&mut self, report: &[u8], now_secs: f64) {
+        const FLASH_REPLY: u8 = 0x21;
+        self.write(now_secs, PadEvent::Report(report));
+        match self.session.accept(report, now_secs) {
+            Ok(_) if Model::of(self.device.id) == Some(Model::SwitchPro) && report[0] == FLASH_REPLY => {
+                self.keep(false, report);
+            }
+            Ok(_) => {}
+            Err(error) => self.last_error = Some(error),
+        }
+    }
+
+    pub(super) fn feature(&mut self, report: &[u8], now_secs: f64) {
+        self.write(now_secs, PadEvent::Feature(report));
+        self.session.accept_feature(report);
+        self.keep(true, report);
+    }
+
+    pub(super) fn state(&mut self, state: GamepadState, now_secs: f64) {
+        self.write(now_secs, PadEvent::State(state));
+        self.session.accept_state(state, now_secs);
+    }
+
+    pub(super) fn encode_into(
+        &mut self,
+        output: &PadOutput,
+        out: &mut [u8; MAX_OUTPUT_LEN],
+    ) -> Option<usize> {
+        self.encoder.as_mut().map(|encoder| encoder.encode_into(output, out))
+    }
+
+    fn keep(&mut self, feature: bool, report: &[u8]) {
+        if self.set_up.len() < MOST_SET_UP {
+            self.set_up.push((feature, report.into()));
+        }
+    }
+
+    /// A recording that fails ends; [`Pad::stop_recording`] tells.
+    fn write(&mut self, now_secs: f64, event: PadEvent<'_>) {
+        if let Some((start_secs, recorder)) = &mut self.recorder
+            && let Err(error) = recorder.record(now_secs - *start_secs, event)
+        {
+            self.recording_error = Some(error);
+            self.recorder = None;
+        }
+    }
+}
