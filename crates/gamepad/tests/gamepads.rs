@@ -119,14 +119,20 @@ fn no_pad_shows_up_twice() {
 
 /// A back end whose events are given, and whose output is kept.
 #[derive(Clone, Default)]
-struct Scripted(Arc<Mutex<(Vec<DeviceEvent>, Vec<Vec<u8>>)>>);
+struct Scripted(Arc<Mutex<Script>>);
+
+#[derive(Default)]
+struct Script {
+    events: Vec<DeviceEvent>,
+    sent: Vec<Vec<u8>>,
+}
 
 impl PadBackend for Scripted {
     fn poll_into(&mut self, events: &mut Vec<(Instant, DeviceEvent)>) {
-        events.extend(self.0.lock().unwrap().0.drain(..).map(|event| (Instant::now(), event)));
+        events.extend(self.0.lock().unwrap().events.drain(..).map(|event| (Instant::now(), event)));
     }
     fn send(&mut self, _: DeviceKey, report: &[u8]) -> bool {
-        self.0.lock().unwrap().1.push(report.to_vec());
+        self.0.lock().unwrap().sent.push(report.to_vec());
         true
     }
 }
@@ -135,13 +141,13 @@ impl PadBackend for Scripted {
 fn polling_and_output_go_through_the_back_ends() {
     let backend = Scripted::default();
     let mut gamepads = Gamepads::new(vec![Box::new(backend.clone())]);
-    backend.0.lock().unwrap().0.extend([connected(1), report(1, 255, false)]);
+    backend.0.lock().unwrap().events.extend([connected(1), report(1, 255, false)]);
     gamepads.poll();
     assert_eq!(gamepads.report().state.left_stick, [1.0, 0.0]);
     let output = PadOutput { low_rumble: 1.0, ..PadOutput::default() };
     assert!(gamepads.set_output(DeviceKey(1), &output));
     assert!(!gamepads.set_output(DeviceKey(2), &output), "no such pad");
-    let sent = backend.0.lock().unwrap().1.clone();
+    let sent = backend.0.lock().unwrap().sent.clone();
     assert_eq!((sent.len(), sent[0][0], sent[0][4]), (1, 0x02, 255));
 }
 
