@@ -1,2 +1,27 @@
-//! The demo: a humanoid steered by pad, keyboard and mouse.
-fn main() {}
+//! `policy-space`: the demo in a window, without one, and its benchmarks.
+
+use clap::Parser as _;
+use viewer::cli::{Cli, Task, bench, headless};
+
+fn main() -> anyhow::Result<()> {
+    let cli = Cli::parse();
+    match cli.command {
+        Some(Task::BenchCrowd(choices)) => bench::crowd(choices),
+        Some(Task::BenchFrame(choices)) => bench::frame(choices),
+        None if cli.demo.headless => {
+            let report = headless::run(&cli.demo)?;
+            println!(
+                "{:.1} s, {} characters: upright {:.1} %, {:.2} m, {} falls, {:.2} m/s, state {}",
+                report.seconds,
+                report.characters,
+                100.0 * report.upright_fraction,
+                report.distance_m,
+                report.falls,
+                report.mean_speed_mps,
+                report.state_hash,
+            );
+            Ok(())
+        }
+        None => anyhow::bail!("the window is not there yet; --headless is"),
+    }
+}

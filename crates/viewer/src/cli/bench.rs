@@ -1,0 +1,159 @@
+//! Benchmarks of whole frames and whole crowds.
+
+use std::sync::Arc;
+use std::time::{Duration, Instant};
+
+use anyhow::Context as _;
+use glam::Vec2;
+use physics_bridge::{CONTROL_HZ, Character, Crowd, Model};
+use policy_core::{
+    Arithmetic, Command, Controller, ControllerConfig, Goal, GraphPosition, Heading, JointTargets,
+};
+use serde_json::json;
+
+use super::{Bench, load};
+use crate::assets;
+use crate::camera::Camera;
+use crate::gpu::Gpu;
+use crate::render::{OffScreen, RenderConfig, Renderer, Scene};
+use crate::sim::{SimConfig, Simulation, TICK_SECS};
+use crate::stage::{Shown, Trail, set_scene};
+
+/// Characters in the crowd that is timed.
+const CROWD: usize = 64;
+/// Rounds; each runs both loops, so that both see the same machine.
+const ROUNDS: usize = 8;
+/// Control ticks a round.
+const TICKS: usize = 30;
+
+/// A walking character's mind and what it cost.
+struct Mind {
+    controller: Controller,
+    command: Command,
+    spent: Duration,
+}
+
+/// Characters that run in real time with controllers, and without: the fastest round of each.
+///
+/// # Errors
+/// When the pack or the humanoid is broken.
+pub fn crowd(bench: Bench) -> anyhow::Result<()> {
+    let pack = load::pack(None)?;
+    let model = Model::from_mjcf(assets::HUMANOID_MJCF)?;
+    let walk = pack.graph().node_named("walk").context("the pack has no policy called walk")?;
+    let stand = |index: usize| -> anyhow::Result<Character> {
+        let mut character = Character::new(&model);
+        let heading = Heading::from_angle(index as f32);
+        character.stand_at(3.0 * index as f32, 0.0, heading, physics_bridge::WALKING_START_MPS)?;
+        Ok(character)
+    };
+    let characters = (0..CROWD).map(stand).collect::<anyhow::Result<Vec<_>>>()?;
+    let mut crowd = Crowd::new(characters, None)?;
+    let config = ControllerConfig { arithmetic: Arithmetic::Fused, start: walk, ..ControllerConfig::default() };
+    let mut minds: Vec<Mind> = (0..CROWD)
+        .map(|index| Mind {
+            controller: Controller::with_config(Arc::clone(&pack), config),
+            command: Command {
+                target: Some(Vec2::new(3.0 * index as f32, 0.0) + Vec2::from_angle(index as f32) * 1000.0),
+                goal: Goal::Node(walk),
+                ..Command::default()
+            },
+            spent: Duration::ZERO,
+        })
+        .collect();
+    minds.iter_mut().for_each(|m| m.controller.place_at(GraphPosition::node(walk)));
+    let mut targets = vec![JointTargets::default(); CROWD];
+    let (mut best_full, mut best_bare, mut share) = (f64::INFINITY, f64::INFINITY, 1.0);
+    for _ in 0..ROUNDS {
+        minds.iter_mut().for_each(|m| m.spent = Duration::ZERO);
+        let start = Instant::now();
+        for _ in 0..TICKS {
+            crowd.tick_with(&mut minds, |_, mind, state, targets| {
+                let start = Instant::now();
+                *targets = *mind.controller.tick(state, &mind.command, TICK_SECS);
+                mind.spent += start.elapsed();
+            });
+        }
+        let full = start.elapsed().as_secs_f64();
+        if full < best_full {
+            let policy: f64 = minds.iter().map(|m| m.spent.as_secs_f64()).sum();
+            (best_full, share) = (full, policy / (full * crowd.threads() as f64));
+        }
+        // The same walk again without minds: from the same states, held by the same targets.
+        let (snapshots, held): (Vec<_>, Vec<_>) =
+            crowd.characters().zip(&minds).map(|(c, m)| (c.save(), *m.controller.joint_targets())).unzip();
+        targets.copy_from_slice(&held);
+        let start = Instant::now();
+        for _ in 0..TICKS {
+            crowd.step(&targets);
+        }
+        best_bare = best_bare.min(start.elapsed().as_secs_f64());
+        for (character, snapshot) in crowd.characters_mut().zip(&snapshots) {
+            character.restore(snapshot)?;
+        }
+    }
+    let realtime = |secs: f64| (CROWD * TICKS) as f64 / secs / f64::from(CONTROL_HZ);
+    let (full, bare) = (realtime(best_full), realtime(best_bare));
+    if bench.json {
+        let object = json!({ "characters_realtime": full, "bare_mujoco_characters": bare, "policy_share": share });
+        println!("{object}");
+    } else {
+        println!("characters in real time, 30 Hz control, 120 Hz physics, {} threads", crowd.threads());
+        println!("  with controllers     {full:8.0}");
+        println!("  stepping alone       {bare:8.0}   ({:.1} %)", 100.0 * full / bare);
+        println!("  share of the policy  {:8.2} %", 100.0 * share);
+    }
+    Ok(())
+}
+
+/// Pictures a second off screen at 1280x720.
+///
+/// # Errors
+/// When there is nothing to draw with.
+pub fn frame(bench: Bench) -> anyhow::Result<()> {
+    let gpu = Gpu::off_screen()?;
+    let one = frames_per_second(&gpu, 1)?;
+    let hundred = frames_per_second(&gpu, 100)?;
+    if bench.json {
+        println!("{}", json!({ "fps_1": one, "fps_100": hundred, "adapter": gpu.adapter_name }));
+    } else {
+        println!("pictures a second at 1280x720, 4x MSAA, drawn by {}", gpu.adapter_name);
+        println!("  1 character     {one:8.1}");
+        println!("  100 characters  {hundred:8.1}");
+    }
+    Ok(())
+}
+
+fn frames_per_second(gpu: &Gpu, characters: usize) -> anyhow::Result<f64> {
+    let config = SimConfig { characters, ..SimConfig::default() };
+    let mut sim = Simulation::new(assets::HUMANOID_MJCF, load::pack(None)?, config)?;
+    let (mesh, _) = load::mesh(None)?;
+    let config = RenderConfig::for_adapter(gpu.is_software);
+    let mut renderer = Renderer::new(gpu, OffScreen::FORMAT, config, mesh);
+    let target = OffScreen::new(gpu, [1280, 720]);
+    let mut camera = Camera::default();
+    if characters > 1 {
+        (camera.distance, camera.pitch) = (14.0, 0.4);
+    }
+    camera.settle(sim.player().poses(1.0).positions[0], 0.0);
+    let mut scene = Scene::default();
+    let mut draw = |sim: &Simulation, alpha: f32| -> anyhow::Result<f64> {
+        let start = Instant::now();
+        set_scene(&mut scene, sim, &camera, 0.6, (alpha, &Shown::default(), &Trail::default()));
+        let mut encoder = gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
+        renderer.draw(&mut encoder, target.view(), target.size(), &scene);
+        gpu.queue.submit([encoder.finish()]);
+        gpu.device.poll(wgpu::PollType::wait_indefinitely())?;
+        Ok(start.elapsed().as_secs_f64())
+    };
+    for warm in 0..3 {
+        draw(&sim, warm as f32 / 3.0)?;
+    }
+    let mut times = Vec::new();
+    for tick in 0..30 {
+        sim.tick(&policy_core::GamepadState::default(), Heading::FORWARD);
+        times.push(draw(&sim, (tick % 3) as f32 / 3.0)?);
+    }
+    times.sort_by(f64::total_cmp);
+    Ok(1.0 / times[times.len() / 2])
+}

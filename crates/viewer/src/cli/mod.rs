@@ -1,0 +1,187 @@
+//! The command line of `policy-space`: what to run, parsed and checked.
+
+pub mod bench;
+pub mod headless;
+pub mod load;
+mod report;
+
+use std::path::PathBuf;
+
+use clap::{Args, Parser, Subcommand};
+use policy_core::BlendMode;
+
+use crate::sim::{Ground, MAX_CHARACTERS};
+
+/// Steer a physics-based humanoid by blending the parameters of tiny policies.
+#[derive(Debug, Parser)]
+#[command(name = "policy-space", version, after_help = EXAMPLES, args_conflicts_with_subcommands = true)]
+pub struct Cli {
+    /// What to run instead of the demo.
+    #[command(subcommand)]
+    pub command: Option<Task>,
+    /// The demo's own choices.
+    #[command(flatten)]
+    pub demo: Demo,
+}
+
+const EXAMPLES: &str = "\
+Examples:
+  policy-space
+      in a window; F1 shows the controls, a gamepad is used when there is one
+  policy-space --terrain wavy --characters 20
+      twenty characters on low hills
+  policy-space --headless --script assets/scripts/tour.ron --seconds 20 --report report.json --frames out/
+      without a window: 20 seconds under a script of pad input, a report and pictures
+  policy-space --headless --script assets/scripts/walk.ron --seconds 5 --frames out/ --panels
+      the same, with the panels in the pictures
+
+Exit status: 0 when it ran, 1 when it could not, 2 when the command line is wrong.";
+
+/// Tasks besides the demo.
+#[derive(Debug, Subcommand)]
+pub enum Task {
+    /// How many characters this machine runs in real time.
+    BenchCrowd(Bench),
+    /// How fast 1 and 100 characters are drawn at 1280x720, off screen.
+    BenchFrame(Bench),
+}
+
+/// Choices of a benchmark.
+#[derive(Clone, Copy, Debug, Args)]
+pub struct Bench {
+    /// Print one JSON object instead of a table.
+    #[arg(long)]
+    pub json: bool,
+}
+
+/// Choices of the demo, in a window or without.
+#[derive(Clone, Debug, Args)]
+#[expect(clippy::struct_excessive_bools, reason = "switches of a command line")]
+pub struct Demo {
+    /// Run without a window.
+    #[arg(long)]
+    pub headless: bool,
+    /// Pad input over time (RON); headless runs only. Without it the pad is neutral.
+    #[arg(long, value_name = "FILE", requires = "headless")]
+    pub script: Option<PathBuf>,
+    /// How long to simulate, up to 3600; by default as long as the script, or 10.
+    #[arg(long, value_name = "SECONDS", requires = "headless", value_parser = seconds)]
+    pub seconds: Option<f64>,
+    /// Write what happened as JSON to this file.
+    #[arg(long, value_name = "FILE", requires = "headless")]
+    pub report: Option<PathBuf>,
+    /// Write pictures (frame_00000.png, ...) into this folder, made when it is not there.
+    #[arg(long, value_name = "DIR", requires = "headless")]
+    pub frames: Option<PathBuf>,
+    /// Pictures per second.
+    #[arg(long, default_value_t = 30, value_name = "N", requires = "headless", value_parser = clap::value_parser!(u32).range(1..=240))]
+    pub fps: u32,
+    /// Size of the pictures or of the window, such as 1280x720.
+    #[arg(long, default_value = "1280x720", value_name = "WxH", value_parser = size)]
+    pub size: [u32; 2],
+    /// Draw the panels into the pictures.
+    #[arg(long, requires = "frames")]
+    pub panels: bool,
+    /// Degrees by which pictures are taken from another side than the pad steers from.
+    #[arg(long, default_value_t = 35.0, value_name = "DEGREES", requires = "headless", allow_negative_numbers = true)]
+    pub view_angle: f32,
+    /// Distance of the camera, metres.
+    #[arg(long, value_name = "METRES", value_parser = distance)]
+    pub distance: Option<f32>,
+    /// Character pack instead of the one inside.
+    #[arg(long, value_name = "FILE")]
+    pub pack: Option<PathBuf>,
+    /// Humanoid to draw (.glb whose nodes carry the body names) instead of the one inside.
+    #[arg(long, value_name = "FILE")]
+    pub mesh: Option<PathBuf>,
+    /// How blends become actions: parameters, actions or switch.
+    #[arg(long, default_value = "parameters", value_parser = mode)]
+    pub mode: BlendMode,
+    /// Walk beside a second character under another blend mode.
+    #[arg(long, value_name = "MODE", value_parser = mode)]
+    pub ghost: Option<BlendMode>,
+    /// The ground: flat, wavy or steps.
+    #[arg(long, default_value = "flat", value_parser = ground)]
+    pub terrain: Ground,
+    /// Number of characters, 1 to 200.
+    #[arg(long, default_value_t = 1, value_name = "N", value_parser = characters)]
+    pub characters: usize,
+    /// Places the hills and turns the crowd.
+    #[arg(long, default_value_t = 1)]
+    pub seed: u32,
+    /// Do not look for gamepads.
+    #[arg(long)]
+    pub no_pad: bool,
+    /// Do not read or write the layout of the panels.
+    #[arg(long)]
+    pub no_layout: bool,
+    /// Print what the player's character does to standard error, twice a second.
+    #[arg(long)]
+    pub trace: bool,
+}
+
+fn size(text: &str) -> Result<[u32; 2], String> {
+    let parts = text.split_once('x').and_then(|(w, h)| Some([w.parse().ok()?, h.parse().ok()?]));
+    match parts {
+        Some([w, h]) if (16..=8192).contains(&w) && (16..=8192).contains(&h) => Ok([w, h]),
+        _ => Err("expected WIDTHxHEIGHT, each 16 to 8192, such as 1280x720".into()),
+    }
+}
+
+fn seconds(text: &str) -> Result<f64, String> {
+    match text.parse() {
+        Ok(seconds) if seconds > 0.0 && seconds <= 3600.0 => Ok(seconds),
+        _ => Err("expected a number above 0 and up to 3600".into()),
+    }
+}
+
+fn distance(text: &str) -> Result<f32, String> {
+    match text.parse() {
+        Ok(metres) if (1.0..=60.0).contains(&metres) => Ok(metres),
+        _ => Err("expected a number from 1 to 60".into()),
+    }
+}
+
+fn characters(text: &str) -> Result<usize, String> {
+    match text.parse() {
+        Ok(count) if (1..=MAX_CHARACTERS).contains(&count) => Ok(count),
+        _ => Err(format!("expected a whole number from 1 to {MAX_CHARACTERS}")),
+    }
+}
+
+fn mode(text: &str) -> Result<BlendMode, String> {
+    let names = BlendMode::ALL.map(BlendMode::name).join(", ");
+    BlendMode::from_name(text).ok_or_else(|| format!("expected one of {names}"))
+}
+
+fn ground(text: &str) -> Result<Ground, String> {
+    let names = Ground::ALL.map(Ground::name).join(", ");
+    Ground::from_name(text).ok_or_else(|| format!("expected one of {names}"))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn error(words: &[&str]) -> String {
+        let line = std::iter::once("policy-space").chain(words.iter().copied());
+        Cli::try_parse_from(line).expect_err("should be refused").to_string()
+    }
+
+    #[test]
+    fn wrong_values_are_refused_and_say_what_is_expected() {
+        assert!(error(&["--terrain", "lava"]).contains("flat, wavy, steps"));
+        assert!(error(&["--mode", "add"]).contains("parameters, actions, switch"));
+        assert!(error(&["--size", "12x"]).contains("1280x720"));
+        assert!(error(&["--characters", "0"]).contains("1 to 200"));
+        assert!(error(&["--headless", "--seconds", "nan"]).contains("up to 3600"));
+        assert!(error(&["--frobnicate"]).contains("--frobnicate"));
+        assert!(error(&["--report", "x.json"]).contains("--headless"));
+    }
+
+    #[test]
+    fn the_command_line_is_consistent() {
+        use clap::CommandFactory as _;
+        Cli::command().debug_assert();
+    }
+}

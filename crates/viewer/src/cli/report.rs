@@ -1,0 +1,44 @@
+//! What a run without a window says in the end.
+
+use serde::Serialize;
+
+/// The report, as written to the file.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Report {
+    /// Simulated time.
+    pub seconds: f64,
+    /// Number of characters.
+    pub characters: usize,
+    /// Blend mode.
+    pub mode: &'static str,
+    /// Ground.
+    pub terrain: &'static str,
+    /// Seed.
+    pub seed: u32,
+    /// Share of the ticks in which a character neither lay nor rose.
+    pub upright_fraction: f64,
+    /// Way of the pelvis seen from above, mean over the characters.
+    pub distance_m: f64,
+    /// Falls of all characters.
+    pub falls: u64,
+    /// What happens to a character that fell.
+    pub after_a_fall: String,
+    /// Times a character was stood up because it could not rise by itself.
+    pub stood_up: u64,
+    /// Times the physics diverged; each was dumped and the character stood up.
+    pub diverged: usize,
+    /// Files with the states before each divergence.
+    pub dumps: Vec<String>,
+    /// Distance over time.
+    pub mean_speed_mps: f64,
+    /// Ticks of all characters for each second on the clock, drawing not counted.
+    pub control_ticks_per_second: f64,
+    /// Time of one controller's tick, mean.
+    pub policy_microseconds_per_tick: f64,
+    /// Over all positions and velocities: equal runs have equal hashes.
+    pub state_hash: String,
+    /// Pictures written.
+    pub frames: usize,
+    /// What drew them.
+    pub adapter: Option<String>,
+}

@@ -1,0 +1,279 @@
+//! The world of the demo: characters in the physics, each with its controller. One path for the window and
+//! for runs without one. Knows nothing of drawing, devices or panels.
+
+mod actor;
+mod error;
+mod ghost;
+mod setup;
+mod totals;
+
+use std::sync::Arc;
+use std::time::{Duration, Instant};
+
+use physics_bridge::{BodyPoses, Character, Crowd, Diverged, Dump, Model, Settings};
+use policy_core::{
+    Blend, BlendMode, CharacterPack, Command, CommandMapper, GamepadState, Goal, GraphPosition, Heading,
+};
+
+pub use actor::{Actor, interpolated};
+pub use error::SimError;
+pub use ghost::Ghost;
+pub use setup::{Ground, MAX_CHARACTERS, SimConfig};
+pub use totals::{StateHash, Totals};
+
+/// Seconds a character without a skill to rise lies before it is stood up again.
+pub const LIE_SECS: f32 = 2.0;
+/// Length of a control tick, seconds.
+pub const TICK_SECS: f32 = 1.0 / physics_bridge::CONTROL_HZ as f32;
+
+/// What stands in for the pad: set by panels.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Overrides {
+    /// Where on the graph to go instead of where the triggers say.
+    pub goal: Option<Goal>,
+    /// Blend weights instead of the place on the graph.
+    pub blend: Option<Blend>,
+    /// How blends become actions.
+    pub mode: BlendMode,
+    /// A skill to start at the next tick.
+    pub skill: Option<usize>,
+}
+
+/// Time that one tick took.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct TickTimes {
+    /// Controllers of all characters, on all threads together.
+    pub policy: Duration,
+    /// The whole tick, on the clock.
+    pub whole: Duration,
+}
+
+/// A character that blew up: what is known, and the state it came from.
+#[derive(Debug)]
+pub struct Blowup {
+    /// Index of the character.
+    pub character: usize,
+    /// What the physics said.
+    pub what: String,
+    /// The state before, to be replayed.
+    pub dump: Dump,
+}
+
+/// Characters, controllers and ground.
+#[derive(Debug)]
+pub struct Simulation {
+    config: SimConfig,
+    pack: Arc<CharacterPack>,
+    model: Model,
+    crowd: Crowd,
+    actors: Vec<Actor>,
+    ghost: Option<Ghost>,
+    mapper: CommandMapper,
+    /// Stands in for the pad.
+    pub overrides: Overrides,
+    ticks: u64,
+    times: TickTimes,
+    totals: Totals,
+}
+
+impl Simulation {
+    /// The pack.
+    #[must_use]
+    pub fn pack(&self) -> &Arc<CharacterPack> {
+        &self.pack
+    }
+
+    /// Ground and settings.
+    #[must_use]
+    pub fn model(&self) -> &Model {
+        &self.model
+    }
+
+    /// What it was made of.
+    #[must_use]
+    pub fn config(&self) -> &SimConfig {
+        &self.config
+    }
+
+    /// Characters, the player's first.
+    #[must_use]
+    pub fn actors(&self) -> &[Actor] {
+        &self.actors
+    }
+
+    /// The player's character.
+    #[must_use]
+    pub fn player(&self) -> &Actor {
+        &self.actors[0]
+    }
+
+    /// The physics of a character.
+    ///
+    /// # Panics
+    /// When there is none of that index.
+    #[must_use]
+    pub fn character(&self, index: usize) -> &Character {
+        self.crowd.character(index)
+    }
+
+    /// The physics of a character, to push it.
+    ///
+    /// # Panics
+    /// When there is none of that index.
+    pub fn character_mut(&mut self, index: usize) -> &mut Character {
+        self.crowd.character_mut(index)
+    }
+
+    /// The second character of the side-by-side comparison.
+    #[must_use]
+    pub fn ghost(&self) -> Option<&Ghost> {
+        self.ghost.as_ref()
+    }
+
+    /// Control ticks since it began.
+    #[must_use]
+    pub fn ticks(&self) -> u64 {
+        self.ticks
+    }
+
+    /// Time the last tick took.
+    #[must_use]
+    pub fn times(&self) -> TickTimes {
+        self.times
+    }
+
+    /// Sums over the whole run.
+    #[must_use]
+    pub fn totals(&self) -> &Totals {
+        &self.totals
+    }
+
+    /// Runs one control tick under `pad`, for a camera that looks along `camera`. Characters that blow up are
+    /// back in their state before it and are stood up again; each is answered.
+    pub fn tick(&mut self, pad: &GamepadState, camera: Heading) -> Vec<Blowup> {
+        let start = Instant::now();
+        let command = self.command(pad, camera);
+        let home = self.actors[0].position();
+        for actor in &mut self.actors {
+            actor.receive(&command, home);
+        }
+        self.crowd.tick_with(&mut self.actors, |_, actor, state, targets| actor.steer(state, targets));
+        let blowups = self.blowups();
+        if let Some(ghost) = &mut self.ghost {
+            ghost.tick(&command, home);
+        }
+        self.times = TickTimes {
+            policy: self.actors.iter().map(|a| a.policy_time).sum(),
+            whole: start.elapsed(),
+        };
+        for (actor, character) in self.actors.iter_mut().zip(self.crowd.characters()) {
+            actor.observe(character, &mut self.totals);
+        }
+        self.totals.times(self.times);
+        for index in 0..self.actors.len() {
+            if self.actors[index].lay_secs >= LIE_SECS || blowups.iter().any(|b| b.character == index) {
+                self.stand_up(index);
+            }
+        }
+        self.ticks += 1;
+        self.overrides.skill = None;
+        blowups
+    }
+
+    /// The pad's command with what panels override.
+    fn command(&mut self, pad: &GamepadState, camera: Heading) -> Command {
+        let mut command = self.mapper.map(pad, camera, &self.actors[0].state);
+        command.goal = self.overrides.goal.unwrap_or(command.goal);
+        command.blend = self.overrides.blend;
+        command.mode = self.overrides.mode;
+        command.skill = self.overrides.skill.or(command.skill);
+        command
+    }
+
+    fn blowups(&self) -> Vec<Blowup> {
+        let describe = |(character, diverged): (usize, &Diverged)| Blowup {
+            character,
+            what: diverged.to_string(),
+            dump: (*diverged.dump).clone(),
+        };
+        self.crowd.diverged().map(describe).collect()
+    }
+
+    /// Stands a character up where it is.
+    pub fn stand_up(&mut self, index: usize) {
+        let (at, heading) = (self.actors[index].position(), self.actors[index].heading());
+        let at = if at.is_finite() { at } else { self.config.start_of(index) };
+        if self.crowd.character_mut(index).stand_at(at.x, at.y, heading, 0.0).is_ok() {
+            self.totals.stood_up += 1;
+            self.actors[index].restart(self.crowd.character(index));
+        }
+    }
+
+    /// Everybody back to the start.
+    pub fn reset(&mut self) {
+        for index in 0..self.actors.len() {
+            let (at, heading) = (self.config.start_of(index), self.config.heading_of(index));
+            if self.crowd.character_mut(index).stand_at(at.x, at.y, heading, 0.0).is_ok() {
+                self.actors[index].restart(self.crowd.character(index));
+            }
+        }
+        self.mapper.reset();
+        if let Some(ghost) = self.ghost.take() {
+            self.start_ghost(ghost.mode());
+        }
+    }
+
+    /// Goes on with other gravity, friction and strength.
+    ///
+    /// # Errors
+    /// When a setting is out of its range; nothing is changed then.
+    pub fn set_settings(&mut self, settings: Settings) -> Result<(), SimError> {
+        let model = self.model.with_settings(settings)?;
+        for character in self.crowd.characters_mut() {
+            character.set_model(&model)?;
+        }
+        if let Some(ghost) = &mut self.ghost {
+            ghost.character_mut().set_model(&model)?;
+        }
+        self.model = model;
+        Ok(())
+    }
+
+    /// A second character from the player's present state, under another blend mode.
+    pub fn start_ghost(&mut self, mode: BlendMode) {
+        self.ghost = Ghost::of(self.crowd.character(0), &self.actors[0], mode);
+    }
+
+    /// Ends the comparison.
+    pub fn stop_ghost(&mut self) {
+        self.ghost = None;
+    }
+
+    /// Takes every character that keeps a history to its state `age` ticks ago; what came after is forgotten
+    /// when the next tick runs.
+    pub fn rewind_to(&mut self, age: usize) {
+        for (actor, character) in self.actors.iter_mut().zip(self.crowd.characters_mut()) {
+            if character.rewind_to(age).is_ok() {
+                actor.rewind_to(age, character);
+            }
+        }
+    }
+
+    /// States that the player can be taken back by, and how far back it is now.
+    #[must_use]
+    pub fn history(&self) -> (usize, usize) {
+        let player = self.crowd.character(0);
+        (player.history_len().saturating_sub(1), player.history_age())
+    }
+
+    /// Puts the player's controller at a place on the graph at once.
+    pub fn place_at(&mut self, position: GraphPosition) {
+        self.actors[0].controller.place_at(position);
+    }
+
+    /// Poses of the ghost between the last two ticks.
+    #[must_use]
+    pub fn ghost_poses(&self, alpha: f32) -> Option<BodyPoses> {
+        self.ghost.as_ref().map(|g| g.poses(alpha))
+    }
+}
