@@ -3,6 +3,7 @@
 
 mod hid_checks;
 
+use gamepad::calibration::Calibration;
 use gamepad::recording::{PadEvent, RecordedPad, Recorder, Recording, VirtualPad};
 use gamepad::{Bus, PadId};
 use libfuzzer_sys::fuzz_target;
@@ -39,6 +40,7 @@ fuzz_target!(|bytes: &[u8]| {
         let event = match kind % 16 {
             0 => PadEvent::Disconnected,
             1 => PadEvent::Feature(report),
+            2 => PadEvent::Calibration(Calibration::default()),
             _ => PadEvent::Report(report),
         };
         recorder.record(time_secs, event).expect("memory takes everything");
