@@ -69,11 +69,21 @@ impl Sculpture {
 
     /// The suit, without what the shells hide, and the dark pieces.
     pub(super) fn suit(&self, coarseness: f32) -> Part {
+        let mut part = Part::default();
+        for group in Group::ALL {
+            self.suit_group(group, coarseness, &mut part);
+        }
+        self.pieces(true, coarseness, &mut part);
+        part
+    }
+
+    /// Arms are meshed by themselves: at rest they touch the hips, and would grow onto them.
+    fn suit_group(&self, group: Group, coarseness: f32, part: &mut Part) {
         let low = Vec3::new(-0.2, -0.35, -0.9);
         let high = Vec3::new(0.25, 0.35, 0.8);
-        let surface = surface_nets::mesh(low, high, SUIT_CELL * coarseness, |p| self.suit_distance(p));
-        let buried: Vec<bool> = surface.positions.iter().map(|&p| self.shell_distance(p) < -0.006).collect();
-        let mut part = Part::default();
+        let field = |p: Vec3| self.suit_distance(group, p);
+        let surface = surface_nets::mesh(low, high, SUIT_CELL * coarseness, field);
+        let buried: Vec<bool> = surface.positions.iter().map(|&p| self.is_buried(group, p)).collect();
         let mut new_index = vec![u32::MAX; surface.positions.len()];
         for triangle in surface.indices.chunks_exact(3) {
             if triangle.iter().all(|&i| buried[i as usize]) {
@@ -83,14 +93,18 @@ impl Sculpture {
                 if new_index[i as usize] == u32::MAX {
                     new_index[i as usize] = part.vertices.len() as u32;
                     let p = surface.positions[i as usize];
-                    let follow = self.follow(p);
-                    part.vertices.push(self.vertex(p, normal(p, |q| self.suit_distance(q)), follow));
+                    part.vertices.push(self.vertex(p, normal(p, field), self.follow(group, p)));
                 }
                 part.indices.push(new_index[i as usize]);
             }
         }
-        self.pieces(true, coarseness, &mut part);
-        part
+    }
+
+    /// True when the shell of the body it belongs to hides the point, however the joints bend.
+    fn is_buried(&self, group: Group, p: Vec3) -> bool {
+        let nearest = nearest(&self.body_distances(group, p));
+        let over = self.shells.iter().filter(|piece| piece.body.index() == nearest);
+        over.map(|piece| piece_distance(piece, p - self.rest[nearest])).any(|d| d < -0.006)
     }
 
     fn vertex(&self, position: Vec3, normal: Vec3, (bodies, follow): ([u8; 4], [u8; 4])) -> Vertex {
@@ -104,7 +118,8 @@ impl Sculpture {
         for step in 1..=5 {
             let height = 0.014 * step as f32;
             let q = p + n * height;
-            let free = self.shell_distance(q).min(self.suit_distance(q)).max(-0.01);
+            let suit = Group::ALL.map(|g| self.suit_distance(g, q)).into_iter().fold(f32::INFINITY, f32::min);
+            let free = self.shell_distance(q).min(suit).max(-0.01);
             closed += share * (height - free).max(0.0) / height;
             share *= 0.75;
         }
@@ -118,28 +133,29 @@ impl Sculpture {
             .fold(f32::INFINITY, f32::min)
     }
 
-    fn body_distances(&self, p: Vec3) -> [f32; 15] {
+    fn body_distances(&self, group: Group, p: Vec3) -> [f32; 15] {
         let mut distances = [f32::INFINITY; 15];
-        for (body, shape) in &self.suit {
+        for (body, shape) in self.suit.iter().filter(|(body, _)| Group::of(*body) == group) {
             let d = &mut distances[body.index()];
             *d = d.min(shape.distance(p - self.rest[body.index()]));
         }
         distances
     }
 
-    /// Bodies that touch in the skeleton melt into each other; others do not, so arms stay off the trunk.
-    fn suit_distance(&self, p: Vec3) -> f32 {
-        let distances = self.body_distances(p);
+    /// Bodies that touch in the skeleton melt into each other; others do not, so legs stay apart.
+    fn suit_distance(&self, group: Group, p: Vec3) -> f32 {
+        let distances = self.body_distances(group, p);
         let joined = Body::ALL.iter().filter_map(|b| Some((b.index(), b.parent()?.index())));
         joined
+            .filter(|&(child, parent)| distances[child].is_finite() && distances[parent].is_finite())
             .map(|(child, parent)| smooth_union(distances[child], distances[parent], fillet(child)))
             .fold(f32::INFINITY, f32::min)
     }
 
     /// The nearest body and its neighbours in the skeleton share a vertex by how near their surfaces are.
-    fn follow(&self, p: Vec3) -> ([u8; 4], [u8; 4]) {
-        let distances = self.body_distances(p);
-        let nearest = (0..15).fold(0, |best, i| if distances[i] < distances[best] { i } else { best });
+    fn follow(&self, group: Group, p: Vec3) -> ([u8; 4], [u8; 4]) {
+        let distances = self.body_distances(group, p);
+        let nearest = nearest(&distances);
         let linked = |i: usize| {
             i == nearest
                 || Body::ALL[i].parent() == Some(Body::ALL[nearest])
@@ -154,6 +170,30 @@ impl Sculpture {
         shares.truncate(4);
         quantised(&shares)
     }
+}
+
+/// Parts of the suit that are meshed by themselves.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Group {
+    Trunk,
+    RightArm,
+    LeftArm,
+}
+
+impl Group {
+    const ALL: [Group; 3] = [Group::Trunk, Group::RightArm, Group::LeftArm];
+
+    fn of(body: Body) -> Self {
+        match body {
+            Body::RightUpperArm | Body::RightLowerArm | Body::RightHand => Group::RightArm,
+            Body::LeftUpperArm | Body::LeftLowerArm | Body::LeftHand => Group::LeftArm,
+            _ => Group::Trunk,
+        }
+    }
+}
+
+fn nearest(distances: &[f32; 15]) -> usize {
+    (0..15).fold(0, |best, i| if distances[i] < distances[best] { i } else { best })
 }
 
 fn fillet(child: usize) -> f32 {
