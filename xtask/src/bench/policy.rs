@@ -52,7 +52,9 @@ fn peers(workspace: &Workspace, arguments: &[&str]) -> Command {
     command
         .args(arguments)
         .args(["--manifest-path", "benches/peers/Cargo.toml"])
-        .env("CARGO_TARGET_DIR", workspace.target().join("peers"));
+        .env("CARGO_TARGET_DIR", workspace.target().join("peers"))
+        // One thread for everybody; some libraries would wake a pool for a job of microseconds.
+        .env("RAYON_NUM_THREADS", "1");
     command
 }
 
