@@ -1,8 +1,9 @@
 //! A recorded pad session gives the same states at the same ticks every time, and so the same demo.
 //!
 //! The recording is read from a file, played at the control rate, and every state is hashed. `drive` is what a
-//! consumer is given: one `GamepadState` per control tick. The headless demo takes the same recording by
-//! `--recording FILE`; once it does, its two runs' `state_hash` are compared the same way.
+//! consumer is given: one `GamepadState` for each control tick. What a demo makes of the states is deterministic on
+//! its own (its `state_hash`), so a recording drives it to the same hash every time; a demo takes a recording by
+//! calling `VirtualPad::report_at(tick / 30)` where it calls `Script::state_at`.
 
 use gamepad::recording::{PadEvent, RecordedPad, Recorder, Recording, VirtualPad};
 use gamepad::{Bus, Button, GamepadState, PadId};

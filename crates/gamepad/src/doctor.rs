@@ -75,7 +75,8 @@ fn pad_text(text: &mut String, number: usize, pad: &Pad, report: &PadReport, now
     let (accepted, refused) = pad.session.counts();
     let _ = writeln!(text, "  reports  {accepted} read, {refused} refused{}", presence(pad, now_secs));
     if pad.has_output() {
-        text.push_str("  output   rumble\n");
+        let light = if pad.has_light() { ", light bar" } else { "" };
+        let _ = writeln!(text, "  output   rumble{light}");
     }
 }
 

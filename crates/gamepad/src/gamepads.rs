@@ -192,12 +192,14 @@ fn is_same_pad(a: &DeviceInfo, b: &DeviceInfo) -> bool {
     if a.key == b.key || kind(a) != kind(b) {
         return false;
     }
-    let letters = |serial: &str| -> String {
-        serial.chars().filter(char::is_ascii_alphanumeric).map(|c| c.to_ascii_lowercase()).collect()
-    };
     match (a.source == b.source, &a.serial, &b.serial) {
         (false, ..) => true,
-        (true, Some(first), Some(second)) => letters(first) == letters(second),
+        (true, Some(first), Some(second)) => letters(first).eq(letters(second)),
         (true, ..) => false,
     }
+}
+
+/// A serial number without punctuation and case: Bluetooth addresses are written in many ways.
+fn letters(serial: &str) -> impl Iterator<Item = char> {
+    serial.chars().filter(char::is_ascii_alphanumeric).map(|c| c.to_ascii_lowercase())
 }

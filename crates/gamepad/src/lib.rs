@@ -10,6 +10,8 @@
 //! # Ok::<(), gamepad::ScriptError>(())
 //! ```
 
+#![forbid(unsafe_code)]
+
 pub mod backend;
 pub mod calibration;
 pub mod descriptor;

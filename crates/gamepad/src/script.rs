@@ -3,6 +3,7 @@
 //! Owns the meaning of a script in time. Reading the text is `parse`, the errors are `error`.
 //! The format is described in `assets/scripts/README.md`.
 
+mod button_name;
 mod error;
 mod parse;
 mod track;

@@ -36,6 +36,8 @@ pub struct PadSession {
     calibration: Calibration,
     measuring: Option<(f64, RestCalibrator)>,
     outcome: Option<Result<(), NotAtRest>>,
+    /// The last measurement that counted, to apply other dead zones to it.
+    measured: Option<RestCalibrator>,
     /// The calibration was measured or set: connecting again measures no more.
     calibrated: bool,
     refused: u64,
@@ -70,6 +72,7 @@ impl PadSession {
             calibration: Calibration::default(),
             measuring: None,
             outcome: None,
+            measured: None,
             calibrated: false,
             refused: 0,
             accepted: 0,
@@ -148,10 +151,19 @@ impl PadSession {
         &self.calibration
     }
 
-    /// Sets rest positions and dead zones, and ends a measurement.
+    /// Sets the dead zones and keeps the rest positions. Where a control moves at rest more than its zone forgives,
+    /// the zone in use stays wider.
+    pub fn set_dead_zones(&mut self, zones: DeadZones) {
+        self.zones = zones;
+        let measured = self.measured.as_ref().and_then(|measured| measured.finish(zones).ok());
+        self.calibration = measured.unwrap_or(Calibration { zones, ..self.calibration });
+    }
+
+    /// Sets rest positions and dead zones exactly, and ends a measurement.
     pub fn set_calibration(&mut self, calibration: Calibration) {
         self.zones = calibration.zones;
         self.calibration = calibration;
+        self.measured = None;
         self.calibrated = true;
         self.measuring = None;
     }
@@ -193,6 +205,7 @@ impl PadSession {
         if let Ok(calibration) = outcome {
             self.calibration = calibration;
             self.calibrated = true;
+            self.measured = Some(calibrator.clone());
         }
         self.outcome = Some(outcome.map(|_| ()));
         self.measuring = None;

@@ -182,3 +182,24 @@ fn a_session_calibrates_itself_after_connecting() {
     assert!(matches!(held.calibration_outcome(), Some(Err(NotAtRest::Moved { .. }))));
     assert_eq!(held.report_at(1.2).state.left_stick, [1.0, 0.0]);
 }
+
+#[test]
+fn dead_zones_can_be_changed_without_losing_the_rest_position() {
+    let mut session = PadSession::new(DUALSENSE, &[]).unwrap();
+    for step in 0..300 {
+        session.accept(&report(152 + (step % 3) as u8, 128, false), f64::from(step) * 0.004).unwrap();
+    }
+    let rest = session.calibration().rest;
+    near(rest.left_stick[0], 25.0 / 127.0, 1e-6);
+    let narrow = Zone::new(0.0, 1.0).unwrap();
+    session.set_dead_zones(DeadZones { left_stick: narrow, ..DeadZones::default() });
+    assert_eq!(session.calibration().rest, rest);
+    assert!(
+        session.calibration().zones.left_stick.inner() > 0.01,
+        "wide enough for what the stick does at rest"
+    );
+    assert_eq!(session.report_at(1.2).state, GamepadState::default());
+    let wide = Zone::new(0.5, 0.9).unwrap();
+    session.set_dead_zones(DeadZones { left_stick: wide, ..DeadZones::default() });
+    assert_eq!(session.calibration().zones.left_stick, wide);
+}

@@ -208,6 +208,7 @@ fn the_doctor_shows_a_pad_with_its_values() {
         "buttons South",
         "battery  5 %, on battery",
         "1 read, 0 refused",
+        "output   rumble, light bar",
         "Nothing is wrong.",
     ] {
         assert!(text.contains(part), "{text}\nlacks {part:?}");

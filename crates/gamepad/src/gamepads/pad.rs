@@ -53,6 +53,12 @@ impl Pad {
         self.encoder.is_some()
     }
 
+    /// True for pads with a light bar.
+    #[must_use]
+    pub fn has_light(&self) -> bool {
+        self.encoder.as_ref().is_some_and(OutputEncoder::has_light)
+    }
+
     /// Ends the recording and flushes it; true when there was one.
     ///
     /// # Errors
