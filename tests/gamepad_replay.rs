@@ -5,8 +5,13 @@
 //! its own (its `state_hash`), so a recording drives it to the same hash every time; a demo takes a recording by
 //! calling `VirtualPad::report_at(tick / 30)` where it calls `Script::state_at`.
 
+use std::sync::Arc;
+
 use gamepad::recording::{PadEvent, RecordedPad, Recorder, Recording, VirtualPad};
 use gamepad::{Bus, Button, GamepadState, PadId};
+use integration_tests::HUMANOID_MJCF;
+use physics_bridge::{Character, Model};
+use policy_core::{Bindings, CharacterPack, CharacterState, CommandMapper, Controller, Heading};
 
 const CONTROL_HZ: f64 = 30.0;
 const SECONDS: f64 = 8.0;
@@ -65,6 +70,27 @@ fn hash(states: &[GamepadState]) -> u64 {
     hash
 }
 
+/// What the recording makes of a character in the physics: every joint position at every tick, hashed.
+fn walked(states: &[GamepadState]) -> (u64, f64) {
+    let pack = CharacterPack::from_bytes(include_bytes!("golden/reference.pack.safetensors")).unwrap();
+    let mut mapper = CommandMapper::new(&pack, &Bindings::default());
+    let mut controller = Controller::new(Arc::new(pack));
+    let mut character = Character::new(&Model::from_mjcf(HUMANOID_MJCF).unwrap());
+    let mut state = CharacterState::default();
+    let mut hash = 0xcbf2_9ce4_8422_2325_u64;
+    for pad in states {
+        character.sense_into(&mut state);
+        let command = mapper.map(pad, Heading::FORWARD, &state);
+        character.actuate(controller.tick(&state, &command, (1.0 / CONTROL_HZ) as f32));
+        character.step().unwrap();
+        for value in character.pose().qpos {
+            hash = (hash ^ value.to_bits()).wrapping_mul(0x0100_0000_01b3);
+        }
+    }
+    let end = character.pose().qpos;
+    (hash, end[0].hypot(end[1]))
+}
+
 const DUALSENSE: PadId = PadId { vendor: 0x054c, product: 0x0ce6, bus: Bus::Usb };
 
 #[test]
@@ -100,4 +126,14 @@ fn another_session_gives_another_hash() {
     assert_ne!(hash(&states), hash(&other));
     let edge = PadId { product: 0x0df2, ..DUALSENSE };
     assert_eq!(hash(&drive(Recording::from_bytes(recorded(edge)).unwrap())), hash(&states));
+}
+
+#[test]
+fn a_recording_drives_a_character_to_the_same_end_every_time() {
+    let states = drive(Recording::from_bytes(recorded(DUALSENSE)).unwrap());
+    let ((first, distance), (second, _)) = (walked(&states), walked(&states));
+    assert_eq!(first, second);
+    let (idle, drift) = walked(&vec![GamepadState::default(); states.len()]);
+    assert_ne!(first, idle, "the recording is what moves the character");
+    assert!(distance > drift, "it walked {distance} m, and {drift} m without a pad");
 }

@@ -104,13 +104,6 @@ impl Model {
             })
             .map(|line| line.3)
     }
-
-    /// True for pads that send reports all the time, so that silence means that they are gone. The others may
-    /// only report changes.
-    #[must_use]
-    pub fn streams(self) -> bool {
-        !matches!(self, Self::XboxWireless | Self::XboxSeries)
-    }
 }
 
 /// The parser of one connected pad, whatever its kind.

@@ -3,10 +3,11 @@
 //! Pure: reports and times in, [`PadReport`] out; the same reports at the same times give the same states.
 
 use crate::calibration::{Calibration, DeadZones, NotAtRest, RestCalibrator};
-use crate::pads::{Model, PadId, Parser};
+use crate::pads::{PadId, Parser};
 use crate::{GamepadState, NoGamepad, PadInput, PadReport, ReportError, Update};
 
-/// How long a pad that reports all the time may be silent before it counts as gone, in seconds.
+/// How long a pad that reports all the time may be silent before it counts as gone, in seconds. Pads do so whose
+/// reports have motion sensors, and those that are seen to; the others may only report changes.
 pub const SILENCE_SECS: f64 = 0.25;
 /// How long a pad is watched after connecting to find where it rests, in seconds.
 pub const CALIBRATION_SECS: f64 = 0.5;
@@ -26,7 +27,7 @@ enum Source {
 #[derive(Clone, Debug)]
 pub struct PadSession {
     source: Source,
-    streams: bool,
+    seen_to_stream: bool,
     unchanged: u32,
     input: PadInput,
     present: bool,
@@ -50,20 +51,19 @@ impl PadSession {
     /// # Errors
     /// [`NoGamepad`] when the pad is not known and its descriptor describes none.
     pub fn new(id: PadId, descriptor: &[u8]) -> Result<Self, NoGamepad> {
-        let streams = Model::of(id).is_some_and(Model::streams);
-        Ok(Self::with_source(Source::Reports(Parser::new(id, descriptor)?), streams))
+        Ok(Self::with_source(Source::Reports(Parser::new(id, descriptor)?)))
     }
 
     /// A session for a pad whose raw states another library reads.
     #[must_use]
     pub fn of_states() -> Self {
-        Self::with_source(Source::States, false)
+        Self::with_source(Source::States)
     }
 
-    fn with_source(source: Source, streams: bool) -> Self {
+    fn with_source(source: Source) -> Self {
         Self {
             source,
-            streams,
+            seen_to_stream: false,
             unchanged: 0,
             input: PadInput::default(),
             present: false,
@@ -136,7 +136,8 @@ impl PadSession {
     /// True unless the pad is gone, or silent although it used to report all the time.
     #[must_use]
     pub fn is_present_at(&self, time_secs: f64) -> bool {
-        let silent = self.streams && time_secs - self.last_secs > SILENCE_SECS;
+        let streams = self.seen_to_stream || self.input.motion.is_some();
+        let silent = streams && time_secs - self.last_secs > SILENCE_SECS;
         self.present && !silent
     }
 
@@ -191,7 +192,7 @@ impl PadSession {
         }
         let steady = before == self.input.raw && time_secs - self.last_secs <= STREAM_GAP_SECS;
         self.unchanged = if steady { self.unchanged.saturating_add(1) } else { 0 };
-        self.streams |= self.unchanged >= STREAM_REPORTS && matches!(self.source, Source::Reports(_));
+        self.seen_to_stream |= self.unchanged >= STREAM_REPORTS && matches!(self.source, Source::Reports(_));
         self.last_secs = time_secs;
     }
 

@@ -163,6 +163,20 @@ fn a_pad_that_reports_changes_only_may_be_silent() {
 }
 
 #[test]
+fn simple_reports_come_on_change_only() {
+    let switch = PadId { vendor: 0x057e, product: 0x2009, bus: Bus::Bluetooth };
+    let mut session = PadSession::new(switch, &[]).unwrap();
+    session.accept(&[0x3f, 1, 0, 8, 0, 0x80, 0, 0x80, 0, 0x80, 0, 0x80], 1.0).unwrap();
+    assert!(session.report_at(60.0).state.buttons.contains(Button::South));
+    // Its full reports come all the time.
+    let mut full = [0; 49];
+    (full[0], full[3]) = (0x30, 0x04);
+    session.accept(&full, 61.0).unwrap();
+    assert!(session.report_at(61.1).state.buttons.contains(Button::South));
+    assert_eq!(session.report_at(62.0), PadReport::default());
+}
+
+#[test]
 fn a_session_calibrates_itself_after_connecting() {
     let mut session = PadSession::new(DUALSENSE, &[]).unwrap();
     for step in 0..300 {
