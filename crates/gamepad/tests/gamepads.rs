@@ -303,3 +303,14 @@ fn buttons_of_a_state_pad_are_kept() {
     gamepads.apply(60.0, DeviceEvent::Disconnected(DeviceKey(99)));
     assert_eq!(gamepads.report().state, state, "such a pad reports changes only");
 }
+
+#[test]
+fn the_back_ends_of_this_build_start_and_stop_on_any_machine() {
+    let (mut gamepads, errors) = Gamepads::with_all_backends();
+    for error in errors {
+        eprintln!("skipped: {error}");
+    }
+    gamepads.poll();
+    let (text, _) = doctor::report(&gamepads, &SystemFacts::of_this_system(Vec::new()));
+    assert!(text.starts_with("Back ends: "), "{text}");
+}
