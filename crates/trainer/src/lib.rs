@@ -3,9 +3,14 @@
 pub mod amp;
 pub mod checkpoint;
 pub mod clip;
+pub mod compare;
 pub mod env;
+pub mod evaluate;
 pub mod nn;
 pub mod normaliser_file;
+pub mod pack;
+pub mod pca;
+pub mod plot;
 pub mod ppo;
 pub mod recipe;
 mod rng;

@@ -38,12 +38,29 @@ enum Verb {
     Train(cli::train::Arguments),
     /// Computes the normalisers of the whole graph from the clips of all recipes.
     Normaliser(cli::normaliser::Arguments),
+    /// Binds trained skills into a character pack.
+    Pack(cli::pack::Arguments),
+    /// Measures a pack: survival, speed, get-up, roll, pushes.
+    Evaluate(cli::evaluate::Arguments),
+    /// Prints the cost of a control step beside that of larger networks.
+    Compare(cli::compare::Arguments),
+    /// Principal components of visited states and of parameters.
+    Pca(cli::pca::Arguments),
+    /// Fits a clip, tells how well it fits, and writes its poses.
+    View(cli::view::Arguments),
 }
 
 fn main() -> Result<()> {
     let arguments = Arguments::parse();
     match &arguments.verb {
         Verb::Train(train) => cli::train::run(&arguments.workplace()?, train),
+        Verb::Pack(verb) => {
+            cli::pack::run(&arguments.model()?, &arguments.normalisers()?, &arguments.runs, verb)
+        }
+        Verb::Evaluate(verb) => cli::evaluate::run(&arguments.model()?, verb),
+        Verb::Compare(verb) => cli::compare::run(verb),
+        Verb::Pca(verb) => cli::pca::run(&arguments.model()?, verb),
+        Verb::View(verb) => cli::view::run(&arguments.model()?, || arguments.clips(), verb),
         Verb::Normaliser(verb) => {
             let (model, clips) = (arguments.model()?, arguments.clips()?);
             cli::normaliser::run(&model, &clips, &arguments.recipes, &arguments.normaliser_path(), verb)

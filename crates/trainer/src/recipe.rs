@@ -58,6 +58,9 @@ pub struct Phase {
     pub samples: u64,
     /// Weight of the task reward; the style's is one less this.
     pub task: f32,
+    /// Height of the hills of the wavy ground that three of four episodes take place on, metres; zero for flat ground.
+    #[serde(default)]
+    pub terrain_metres: f32,
 }
 
 /// Why a recipe can't be used.
@@ -123,16 +126,18 @@ impl Recipe {
     fn checks(&self) -> Vec<(bool, &'static str, &'static str, String)> {
         let (env, ppo, disc) = (&self.environment, &self.ppo, &self.discriminator);
         let plain = |s: &str| {
-            !s.is_empty() && s.chars().all(|c| c.is_ascii_lowercase() || c.is_ascii_digit() || c == '-')
+            !s.is_empty() && s.chars().all(|c| c.is_ascii_lowercase() || c.is_ascii_digit() || c == '_')
         };
         let unit = |x: f32| (0.0..=1.0).contains(&x);
         let positive = |x: f32| x.is_finite() && x > 0.0;
         let ordered = |[a, b]: [f32; 2]| a.is_finite() && b.is_finite() && 0.0 <= a && a <= b;
         vec![
-            (plain(&self.skill), "skill", "lower-case letters, digits and dashes", self.skill.clone()),
+            (plain(&self.skill), "skill", "lower-case letters, digits and underscores", self.skill.clone()),
             (!self.edge || self.parent.is_some(), "edge", "a parent beside it", "none".into()),
             (!self.clips.is_empty(), "clips", "at least one clip", "none".into()),
             (self.clips.iter().all(|c| positive(c.share)), "clips.share", "positive shares", format!("{:?}", self.clips)),
+            (self.phases.iter().all(|p| p.terrain_metres == 0.0 || (0.01..=0.5).contains(&p.terrain_metres)), "phases.terrain_metres", "0, or 0.01 to 0.5", format!("{:?}", self.phases)),
+            (env.push_secs >= 0.0 && (0.0..=5000.0).contains(&env.push_newton), "environment.push_secs and push_newton", "a time of at least 0, and 0 to 5000 newton", format!("{} and {}", env.push_secs, env.push_newton)),
             (!self.phases.is_empty(), "phases", "at least one phase", "none".into()),
             (self.phases.iter().all(|p| unit(p.task)), "phases.task", "a weight in [0, 1]", format!("{:?}", self.phases)),
             ((1..=65_536).contains(&env.characters), "environment.characters", "1 to 65536", env.characters.to_string()),

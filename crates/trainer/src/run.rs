@@ -1,6 +1,6 @@
 //! A run on disk: `runs/<skill>/` with the recipe, the seed, metrics and checkpoints; and the loop that fills it.
 
-use std::collections::HashMap;
+use std::collections::{BTreeMap, HashMap};
 use std::fmt::Write as _;
 use std::io::Write as _;
 use std::path::{Path, PathBuf};
@@ -12,6 +12,7 @@ use physics_bridge::Model;
 use crate::checkpoint::{Checkpoint, Trained, write_atomically};
 use crate::clip::ClipFolder;
 use crate::env::{Demonstrations, Normalisers};
+use crate::plot;
 use crate::recipe::Recipe;
 use crate::training::{IterationReport, Parent, Training};
 
@@ -49,6 +50,33 @@ impl Workplace {
             bail!("{}: expected the recipe of {skill}, found that of {}", path.display(), recipe.skill);
         }
         Ok(recipe)
+    }
+
+    /// All recipes of the folder, parents before children.
+    ///
+    /// # Errors
+    /// When a recipe can't be used, or a parent has none.
+    pub fn recipes_in_order(&self) -> Result<Vec<Recipe>> {
+        let mut left = BTreeMap::new();
+        let folder = std::fs::read_dir(&self.recipes)
+            .with_context(|| format!("cannot read {}", self.recipes.display()))?;
+        for entry in folder {
+            let path = entry?.path();
+            if path.extension().is_some_and(|e| e == "toml") {
+                let recipe = Recipe::load(&path)?;
+                left.insert(recipe.skill.clone(), recipe);
+            }
+        }
+        let mut ordered: Vec<Recipe> = Vec::new();
+        while !left.is_empty() {
+            let ready = |r: &Recipe| r.parent.as_ref().is_none_or(|p| ordered.iter().any(|o| o.skill == *p));
+            let Some(skill) = left.values().find(|r| ready(r)).map(|r| r.skill.clone()) else {
+                let names: Vec<_> = left.keys().cloned().collect();
+                bail!("expected every parent to have a recipe, and no circle; found none for {}", names.join(", "));
+            };
+            ordered.extend(left.remove(&skill));
+        }
+        Ok(ordered)
     }
 
     /// Path of a skill's checkpoint.
@@ -139,7 +167,7 @@ impl Run {
     /// When the folder can't be written, or a parameter is no longer finite.
     pub fn advance(&mut self) -> Result<IterationReport> {
         let (start, before) = (Instant::now(), self.training.samples);
-        let report = self.training.iterate();
+        let report = self.training.iterate()?;
         let secs = start.elapsed().as_secs_f64();
         self.secs += secs;
         self.iterations += 1;
@@ -175,7 +203,8 @@ impl Run {
         }
         let progress = (self.seed, training.samples, self.secs);
         let checkpoint = Checkpoint::new(networks, progress, learner.actor_rate, learner.rng);
-        Ok(checkpoint.save(&self.folder.join("checkpoint.safetensors"))?)
+        checkpoint.save(&self.folder.join("checkpoint.safetensors"))?;
+        plot::draw(&self.folder.join("metrics.csv"), &self.folder.join("metrics.svg"))
     }
 }
 

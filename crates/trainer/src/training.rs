@@ -1,6 +1,6 @@
 //! One iteration of training: rollout, style, returns, gradient steps. The loop around it belongs to the program.
 
-use physics_bridge::Model;
+use physics_bridge::{Model, ModelError, Terrain};
 use policy_core::{ActionScaling, DISCRIMINATOR_INPUT_LEN, DOF_COUNT, POLICY_INPUT_LEN};
 
 use crate::Rng;
@@ -46,6 +46,9 @@ pub struct Training {
     demonstrations: Demonstrations,
     parent_demonstrations: Option<Demonstrations>,
     normalisers: Normalisers,
+    model: Model,
+    scaling: ActionScaling,
+    terrain_metres: f32,
 }
 
 /// What an iteration measured.
@@ -113,7 +116,7 @@ impl Training {
             normalisers: &normalisers,
             edge: recipe.edge,
         };
-        let population = Population::new(model, &scaling, &stage, seed);
+        let population = Population::new(std::slice::from_ref(model), &scaling, &stage, seed);
         Self {
             rollout: Rollout::new(steps, count, POLICY_INPUT_LEN, DOF_COUNT),
             judged: vec![0.0; steps * count * DISCRIMINATOR_INPUT_LEN],
@@ -127,11 +130,41 @@ impl Training {
             demonstrations,
             parent_demonstrations,
             normalisers,
+            model: model.clone(),
+            scaling,
+            terrain_metres: 0.0,
         }
     }
 
+    /// Puts the characters on the ground of the phase that is on, when it has changed.
+    fn choose_ground(&mut self) -> Result<(), ModelError> {
+        let metres = self.recipe.phase_at(self.samples).1.terrain_metres;
+        if metres == self.terrain_metres {
+            return Ok(());
+        }
+        self.terrain_metres = metres;
+        let mut grounds = vec![self.model.clone()];
+        for seed in (1..4).filter(|_| metres > 0.0) {
+            let terrain = Terrain::Wavy { height_m: metres, wavelength_m: 6.0, seed };
+            grounds.push(self.model.with_terrain(terrain)?);
+        }
+        let stage = Stage {
+            config: &self.recipe.environment,
+            demonstrations: &self.demonstrations,
+            parent_demonstrations: self.parent_demonstrations.as_ref(),
+            normalisers: &self.normalisers,
+            edge: self.recipe.edge,
+        };
+        self.population = Population::new(&grounds, &self.scaling, &stage, self.samples);
+        Ok(())
+    }
+
     /// One rollout and the gradient steps after it.
-    pub fn iterate(&mut self) -> IterationReport {
+    ///
+    /// # Errors
+    /// When the model can't be set on the terrain of the phase.
+    pub fn iterate(&mut self) -> Result<IterationReport, ModelError> {
+        self.choose_ground()?;
         let start = std::time::Instant::now();
         self.roll_out();
         let rolled = start.elapsed();
@@ -143,7 +176,7 @@ impl Training {
         let update = self.learner.update(&self.rollout);
         self.samples += self.rollout.rows() as u64;
         let rows = self.rollout.rows() as f32;
-        IterationReport {
+        Ok(IterationReport {
             population: std::mem::take(&mut self.population.report),
             style,
             reward: self.rollout.rewards.iter().sum::<f32>() / rows,
@@ -156,7 +189,7 @@ impl Training {
                 (start.elapsed() - judged).as_secs_f32(),
                 (judged - rolled).as_secs_f32(),
             ],
-        }
+        })
     }
 
     fn roll_out(&mut self) {

@@ -1,4 +1,9 @@
 //! The verbs of the program.
 
+pub(crate) mod compare;
+pub(crate) mod evaluate;
 pub(crate) mod normaliser;
+pub(crate) mod pack;
+pub(crate) mod pca;
 pub(crate) mod train;
+pub(crate) mod view;

@@ -1,12 +1,10 @@
 //! `trainer train`: one skill, or the whole graph in order.
 
-use std::collections::BTreeMap;
 use std::time::Duration;
 
-use anyhow::{Result, bail};
+use anyhow::Result;
 use clap::Args;
 use indicatif::{ProgressBar, ProgressStyle};
-use trainer::recipe::Recipe;
 use trainer::run::{Run, Workplace};
 
 /// Arguments of the verb.
@@ -39,35 +37,13 @@ pub(crate) fn run(workplace: &Workplace, arguments: &Arguments) -> Result<()> {
     }
     let recipes = match &arguments.skill {
         Some(skill) => vec![workplace.recipe(skill)?],
-        None => in_order(workplace)?,
+        None => workplace.recipes_in_order()?,
     };
     for recipe in recipes {
         let mut run = workplace.prepare(recipe, arguments.seed, arguments.resume)?;
         train(&mut run, arguments.iterations)?;
     }
     Ok(())
-}
-
-/// All recipes, parents first.
-fn in_order(workplace: &Workplace) -> Result<Vec<Recipe>> {
-    let mut left = BTreeMap::new();
-    for entry in std::fs::read_dir(&workplace.recipes)? {
-        let path = entry?.path();
-        if path.extension().is_some_and(|e| e == "toml") {
-            let recipe = Recipe::load(&path)?;
-            left.insert(recipe.skill.clone(), recipe);
-        }
-    }
-    let mut ordered: Vec<Recipe> = Vec::new();
-    while !left.is_empty() {
-        let ready = |r: &Recipe| r.parent.as_ref().is_none_or(|p| ordered.iter().any(|o| o.skill == *p));
-        let Some(skill) = left.values().find(|r| ready(r)).map(|r| r.skill.clone()) else {
-            let names: Vec<_> = left.keys().cloned().collect();
-            bail!("expected every parent to have a recipe and no circle, found none for {}", names.join(", "));
-        };
-        ordered.extend(left.remove(&skill));
-    }
-    Ok(ordered)
 }
 
 fn train(run: &mut Run, iterations: Option<u64>) -> Result<()> {

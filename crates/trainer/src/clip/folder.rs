@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use super::{Clip, ClipError, deepmimic, json};
+use super::{Clip, ClipError, deepmimic, json, npy};
 
 /// Environment variable that names the folder of clips.
 pub const MOTIONS_VARIABLE: &str = "POLICY_SPACE_MOTIONS";
@@ -28,7 +28,7 @@ impl ClipFolder {
     /// # Errors
     /// When there is none, or it can't be read.
     pub fn load(&self, name: &str) -> Result<Clip, ClipError> {
-        for ending in ["json", "txt"] {
+        for ending in ["json", "txt", "npy"] {
             let path = self.0.join(format!("{name}.{ending}"));
             if path.is_file() {
                 return load_file(&path);
@@ -48,6 +48,7 @@ pub fn load_file(path: &Path) -> Result<Clip, ClipError> {
     match path.extension().and_then(|e| e.to_str()) {
         Some("json") => json::parse(&name, &std::fs::read_to_string(path).map_err(io)?),
         Some("txt") => deepmimic::parse(&name, &std::fs::read_to_string(path).map_err(io)?),
+        Some("npy") => npy::parse(&name, &std::fs::read(path).map_err(io)?),
         other => Err(ClipError::Format {
             clip: name,
             message: format!("expected a file ending in .json, .txt or .npy, found {other:?}"),

@@ -8,6 +8,8 @@ mod fit;
 mod folder;
 mod json;
 mod motion;
+mod npy;
+mod pickle;
 
 pub use error::ClipError;
 pub use fit::{JointFit, JointLimits};
@@ -123,3 +125,5 @@ impl Clip {
 /// The body whose motion a body takes in the mirror.
 const MIRRORED_BODY: [usize; BODY_COUNT] = [0, 1, 2, 6, 7, 8, 3, 4, 5, 12, 13, 14, 9, 10, 11];
 
+#[cfg(test)]
+mod tests;

@@ -1,7 +1,7 @@
 //! One character that learns: its body, its command, its history and its episode.
 
 use glam::Vec2;
-use physics_bridge::{Character, Model};
+use physics_bridge::{Character, Model, Pose, Terrain};
 use policy_core::{
     ActionScaling, Body, CharacterState, DISCRIMINATOR_INPUT_LEN, DOF_COUNT, FrameHistory, Heading,
     JointTargets, OBSERVATION_LEN, POLICY_INPUT_LEN, discriminator_frame_into, observe_into, target_input,
@@ -36,7 +36,11 @@ pub struct Agent {
     history: FrameHistory,
     rng: Rng,
     age: u32,
+    place: (f64, f64),
 }
+
+/// Characters on a terrain start this near to its middle, metres along each axis.
+const TERRAIN_HALF_METRES: f32 = 25.0;
 
 impl Agent {
     /// A character with its own random numbers; [`Agent::reset`] starts its first episode.
@@ -49,12 +53,14 @@ impl Agent {
             history: FrameHistory::default(),
             rng,
             age: 0,
+            place: (0.0, 0.0),
         }
     }
 
     /// Starts an episode; the first one at a random age, so that a population does not end as one.
     pub fn reset(&mut self, stage: &Stage<'_>, first: bool) {
         let config = stage.config;
+        self.choose_place();
         let start = match stage.parent_demonstrations {
             Some(parent) if self.rng.chance(config.start.parent) => parent.draw_start(&mut self.rng),
             _ => stage.demonstrations.draw_start(&mut self.rng),
@@ -70,9 +76,17 @@ impl Agent {
         self.age = if first { self.rng.index(config.episode_ticks as usize) as u32 } else { 0 };
     }
 
+    /// Sets the character down in a random heading, lifted until nothing is in the ground.
     fn start_from(&mut self, start: &StartPose) {
-        let pose = placed(&start.pose, 0.0, 0.0, f64::from(self.rng.angle()));
-        self.character.set_pose(&pose.qpos, &pose.qvel).expect("a clip's pose was tried when it was fitted");
+        let (x, y) = self.place;
+        let mut pose = placed(&start.pose, x, y, f64::from(self.rng.angle()));
+        pose.qpos[2] += f64::from(self.character.model().height_at(x as f32, y as f32));
+        self.set(&pose);
+        let clearance = self.character.clearance();
+        if clearance < 0.0 {
+            pose.qpos[2] -= f64::from(clearance);
+            self.set(&pose);
+        }
         self.character.sense_into(&mut self.state);
         self.history.clear();
         for frame in start.frames.iter() {
@@ -80,16 +94,29 @@ impl Agent {
         }
     }
 
+    fn set(&mut self, pose: &Pose) {
+        self.character.set_pose(&pose.qpos, &pose.qvel).expect("a clip's pose was tried when it was fitted");
+    }
+
+    /// Chooses where the next episode starts: on flat ground at the origin, on a terrain anywhere near its middle.
+    fn choose_place(&mut self) {
+        if self.character.model().terrain() != Terrain::Flat {
+            let half = f64::from(TERRAIN_HALF_METRES);
+            let mut along = || half * f64::from(self.rng.range(-1.0, 1.0));
+            self.place = (along(), along());
+        }
+    }
+
     /// Drops the character in a random attitude with loose joints and lets it come to rest for a while.
     fn drop_limp(&mut self, stage: &Stage<'_>, start: &StartPose) {
-        let mut pose = placed(&start.pose, 0.0, 0.0, 0.0);
+        let mut pose = placed(&start.pose, self.place.0, self.place.1, 0.0);
         let turn = glam::Quat::from_euler(
             glam::EulerRot::ZYX,
             self.rng.angle(),
             self.rng.range(-1.6, 1.6),
             self.rng.angle(),
         );
-        pose.qpos[2] = 0.7;
+        pose.qpos[2] = 0.7 + f64::from(self.character.model().height_at(self.place.0 as f32, self.place.1 as f32));
         pose.qpos[3..7].copy_from_slice(&[turn.w, turn.x, turn.y, turn.z].map(f64::from));
         pose.qvel.fill(0.0);
         if self.character.set_pose(&pose.qpos, &pose.qvel).is_err() {
@@ -162,6 +189,7 @@ impl Agent {
         let mut targets = JointTargets::default();
         scaling.targets_into(action, &mut targets);
         self.character.actuate(&targets);
+        self.push(config);
         let diverged = self.character.step().is_err();
         self.character.sense_into(&mut self.state);
         self.push_frame(stage);
@@ -200,10 +228,23 @@ impl Agent {
         config.parent_speed_mps + t * (config.speed_mps - config.parent_speed_mps)
     }
 
+    /// Now and then a push of 0.2 s on the pelvis, in a random horizontal direction.
+    fn push(&mut self, config: &EnvironmentConfig) {
+        if config.push_secs > 0.0 && self.rng.chance(DT_SECS / config.push_secs) {
+            let force = Vec2::from_angle(self.rng.angle()) * self.rng.uniform() * config.push_newton;
+            self.character
+                .push(Body::Pelvis, force.extend(0.0), PUSH_SECS)
+                .expect("the recipe's force was checked");
+        }
+    }
+
     fn has_fallen(&self, config: &EnvironmentConfig) -> bool {
         config.fall == Fall::Upright && fallen(&self.state, config.fall_height)
     }
 }
+
+/// Length of a push, seconds.
+pub const PUSH_SECS: f32 = 0.2;
 
 /// Least heights of an upright body above the ground, metres: body frames, not lowest points.
 const LEAST_HEIGHTS: [(Body, f32); 9] = [

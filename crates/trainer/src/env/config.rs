@@ -68,6 +68,10 @@ pub struct EnvironmentConfig {
     pub stop: f32,
     /// Where episodes start.
     pub start: Start,
+    /// Mean seconds between pushes of 0.2 s on the pelvis; zero for none.
+    pub push_secs: f32,
+    /// Largest force of a push, newton.
+    pub push_newton: f32,
 }
 
 impl Default for EnvironmentConfig {
@@ -85,6 +89,8 @@ impl Default for EnvironmentConfig {
             target_secs: [2.0, 7.0],
             stop: 0.15,
             start: Start::default(),
+            push_secs: 0.0,
+            push_newton: 0.0,
         }
     }
 }

@@ -7,7 +7,6 @@ use policy_core::{
     discriminator_frame_into, observe_into,
 };
 
-use super::ground::lowest_point;
 use crate::Rng;
 use crate::clip::{Clip, ClipError, JointLimits, Motion};
 
@@ -45,8 +44,6 @@ struct Source {
     motion: Motion,
     /// Normalised frames, one for each pose.
     frames: Vec<[f32; FRAME_LEN]>,
-    /// How far each pose must be lifted until nothing is in the floor, metres.
-    lifts: Vec<f32>,
     /// Share of this clip when one is drawn.
     share: f32,
 }
@@ -67,32 +64,46 @@ pub struct Demonstrations {
     shares: f32,
 }
 
+/// A clip on the ground: its motion, and state and clearance of every pose.
+#[derive(Clone, Debug)]
+pub struct Fitted {
+    /// The motion, lifted.
+    pub motion: Motion,
+    /// What each pose senses, by the physics' forward kinematics.
+    pub states: Vec<CharacterState>,
+    /// Height of each pose's lowest point, metres; negative inside the ground.
+    pub clearances: Vec<f32>,
+    /// How far the clip was lifted, metres.
+    pub lift: f32,
+}
+
 /// Fits a clip and lifts it so that a fifth of its poses touch the ground or sink in.
 ///
 /// # Errors
 /// When the clip is too short or the physics refuses a pose.
-pub fn fit(clip: &Clip, model: &Model) -> Result<(Motion, Vec<CharacterState>), SourceError> {
+pub fn fit(clip: &Clip, model: &Model) -> Result<Fitted, SourceError> {
     let (low, high) = model.joint_limits();
     let mut motion = Motion::fit(clip, JointLimits { low, high })?;
-    let mut lowest: Vec<f32> = states(&motion, model)?.iter().map(lowest_point).collect();
+    let mut lowest = states(&motion, model)?.1;
     lowest.sort_by(f32::total_cmp);
-    motion.lift(-f64::from(lowest[lowest.len() / 5]));
-    let states = states(&motion, model)?;
-    Ok((motion, states))
+    let lift = -lowest[lowest.len() / 5];
+    motion.lift(f64::from(lift));
+    let (states, clearances) = states(&motion, model)?;
+    Ok(Fitted { motion, states, clearances, lift })
 }
 
-/// The state of every pose by the physics' forward kinematics.
-fn states(motion: &Motion, model: &Model) -> Result<Vec<CharacterState>, SourceError> {
+/// State and clearance of every pose by the physics' forward kinematics.
+fn states(motion: &Motion, model: &Model) -> Result<(Vec<CharacterState>, Vec<f32>), SourceError> {
     let mut character = Character::new(model);
-    let mut state = CharacterState::default();
-    let mut states = Vec::with_capacity(motion.poses.len());
-    for (index, pose) in motion.poses.iter().enumerate() {
+    let mut states = vec![CharacterState::default(); motion.poses.len()];
+    let mut clearances = Vec::with_capacity(motion.poses.len());
+    for (index, (pose, state)) in motion.poses.iter().zip(&mut states).enumerate() {
         let refused = |source| SourceError::Pose { clip: motion.name.clone(), index, source };
         character.set_pose(&pose.qpos, &pose.qvel).map_err(refused)?;
-        character.sense_into(&mut state);
-        states.push(state);
+        character.sense_into(state);
+        clearances.push(character.clearance());
     }
-    Ok(states)
+    Ok((states, clearances))
 }
 
 impl Demonstrations {
@@ -108,16 +119,15 @@ impl Demonstrations {
         let mut sources = Vec::new();
         for (clip, share) in clips {
             for clip in [clip.clone(), clip.mirrored()] {
-                let (motion, states) = fit(&clip, model)?;
+                let Fitted { motion, states, .. } = fit(&clip, model)?;
                 let frame = |state: &CharacterState| {
                     let mut frame = [0.0; FRAME_LEN];
                     discriminator_frame_into(state, &mut frame);
                     normaliser.normalise_in_place(&mut frame);
                     frame
                 };
-                let lifts = states.iter().map(|s| (-lowest_point(s)).max(0.0)).collect();
                 let frames = states.iter().map(frame).collect();
-                sources.push(Source { motion, frames, lifts, share: share * 0.5 });
+                sources.push(Source { motion, frames, share: share * 0.5 });
             }
         }
         let shares = sources.iter().map(|s| s.share).sum();
@@ -147,7 +157,7 @@ impl Demonstrations {
         }
     }
 
-    /// Draws a start state, lifted out of the floor.
+    /// Draws a start state.
     #[must_use]
     pub fn draw_start(&self, rng: &mut Rng) -> StartPose {
         let (source, index) = self.draw(rng);
@@ -155,9 +165,7 @@ impl Demonstrations {
         for (age, frame) in frames.iter_mut().rev().enumerate() {
             *frame = source.frames[source.motion.earlier(index, age)];
         }
-        let mut pose = source.motion.poses[index];
-        pose.qpos[2] += f64::from(source.lifts[index]);
-        StartPose { pose, frames }
+        StartPose { pose: source.motion.poses[index], frames }
     }
 }
 
@@ -175,7 +183,7 @@ impl Normalisers {
         let mut frame = Moments::new(FRAME_LEN);
         for clip in clips {
             for clip in [clip.clone(), clip.mirrored()] {
-                let (_, states) = fit(&clip, model)?;
+                let Fitted { states, .. } = fit(&clip, model)?;
                 let weight = 1.0 / states.len() as f64;
                 for state in &states {
                     let mut seen = [0.0; OBSERVATION_LEN];

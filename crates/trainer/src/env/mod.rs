@@ -6,14 +6,12 @@ mod agent;
 mod command;
 mod config;
 mod demonstrations;
-mod ground;
 mod population;
 mod reward;
 
-pub use agent::{Agent, Episode, fallen};
+pub use agent::{Agent, Episode, PUSH_SECS, fallen};
 pub use command::{Command, DT_SECS};
 pub use config::{EnvironmentConfig, Fall, Start, Task};
-pub use demonstrations::{Demonstrations, Normalisers, SourceError, StartPose, fit};
-pub use ground::lowest_point;
+pub use demonstrations::{Demonstrations, Fitted, Normalisers, SourceError, StartPose, fit};
 pub use population::{CRITIC_INPUT_LEN, Population, PopulationReport, Stage};
 pub use reward::{RewardTerms, standing_reward, target_reward};

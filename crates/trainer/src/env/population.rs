@@ -64,11 +64,15 @@ pub struct Population {
 }
 
 impl Population {
-    /// Starts an episode for every character.
+    /// Starts an episode for every character; they share the given grounds in turn.
+    ///
+    /// # Panics
+    /// When there is no model.
     #[must_use]
-    pub fn new(model: &Model, scaling: &ActionScaling, stage: &Stage<'_>, seed: u64) -> Self {
+    pub fn new(grounds: &[Model], scaling: &ActionScaling, stage: &Stage<'_>, seed: u64) -> Self {
         let count = stage.config.characters;
-        let agents = (0..count).map(|i| Agent::new(model, Rng::new(seed, 1000 + i as u64))).collect();
+        let ground = |i: usize| &grounds[i % grounds.len()];
+        let agents = (0..count).map(|i| Agent::new(ground(i), Rng::new(seed, 1000 + i as u64))).collect();
         let mut population = Self {
             agents,
             ends: vec![Done::No; count],

@@ -1,0 +1,25 @@
+//! `trainer compare`: the paper's cost table.
+
+use anyhow::Result;
+use clap::Args;
+use trainer::compare::costs;
+
+/// Arguments of the verb.
+#[derive(Args)]
+pub(crate) struct Arguments {
+    /// Blocks of 16 calls that are timed.
+    #[arg(long, default_value_t = 2000)]
+    repeats: usize,
+}
+
+/// Prints the table as Markdown.
+pub(crate) fn run(arguments: &Arguments) -> Result<()> {
+    println!("| control step | networks | multiply-adds | microseconds |\n|---|---|---|---|");
+    for cost in costs(arguments.repeats)? {
+        let widths = |n: &Vec<usize>| n.iter().map(ToString::to_string).collect::<Vec<_>>().join("-");
+        let networks: Vec<String> = cost.networks.iter().map(widths).collect();
+        let (name, count, time) = (&cost.name, cost.multiply_adds, cost.microseconds);
+        println!("| {name} | {} | {count} | {time:.2} |", networks.join(" + "));
+    }
+    Ok(())
+}

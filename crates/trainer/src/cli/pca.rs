@@ -1,0 +1,101 @@
+//! `trainer pca`: the data of the paper's figures 5 (visited states) and 6 (parameters) as CSV, and the correlation
+//! between distances of parameters and of states.
+
+use std::fmt::Write as _;
+use std::path::PathBuf;
+use std::sync::Arc;
+
+use anyhow::{Context, Result};
+use clap::Args;
+use physics_bridge::Model;
+use policy_core::{CharacterPack, Command, Goal, Mlp, OBSERVATION_LEN, TARGET_RANGE_METRES};
+use rayon::prelude::*;
+use trainer::checkpoint::write_atomically;
+use trainer::evaluate::Subject;
+use trainer::pca::{Components, correlation};
+
+/// Arguments of the verb.
+#[derive(Args)]
+pub(crate) struct Arguments {
+    /// The pack.
+    pack: PathBuf,
+    /// Folder for `states.csv` and `parameters.csv`.
+    #[arg(long, default_value = "out/pca")]
+    out: PathBuf,
+    /// Seconds that each policy is watched.
+    #[arg(long, default_value_t = 20.0)]
+    secs: f32,
+}
+
+/// Computes and writes.
+pub(crate) fn run(model: &Model, arguments: &Arguments) -> Result<()> {
+    let path = &arguments.pack;
+    let bytes = std::fs::read(path).with_context(|| format!("cannot read {}", path.display()))?;
+    let pack = Arc::new(CharacterPack::from_bytes(&bytes).with_context(|| path.display().to_string())?);
+    std::fs::create_dir_all(&arguments.out)?;
+    let ticks = (arguments.secs * 30.0) as usize;
+    let nodes = pack.graph().nodes();
+    let visited: Vec<Vec<Vec<f32>>> =
+        (0..nodes.len()).into_par_iter().map(|node| states(model, &pack, node, ticks)).collect();
+    let all: Vec<Vec<f32>> = visited.iter().flatten().cloned().collect();
+    let states = Components::of(&all, 2);
+    let mut csv = String::from("policy,x,y\n");
+    for (node, rows) in nodes.iter().zip(&visited) {
+        for row in rows {
+            let p = states.project(row);
+            let _ = writeln!(csv, "{},{:.4},{:.4}", node.name, p[0], p[1]);
+        }
+    }
+    write_atomically(&arguments.out.join("states.csv"), csv.as_bytes())?;
+
+    let flat: Vec<Vec<f32>> = pack.policies().iter().map(parameters).collect();
+    let components = Components::of(&flat, 2);
+    let mut csv = String::from("policy,x,y\n");
+    for (node, row) in nodes.iter().zip(&flat) {
+        let p = components.project(row);
+        let _ = writeln!(csv, "{},{:.4},{:.4}", node.name, p[0], p[1]);
+    }
+    write_atomically(&arguments.out.join("parameters.csv"), csv.as_bytes())?;
+
+    let (mut of_parameters, mut of_states) = (Vec::new(), Vec::new());
+    for a in 0..nodes.len() {
+        for b in a + 1..nodes.len() {
+            of_parameters.push(distance(&flat[a], &flat[b]));
+            of_states.push(distance(&mean(&visited[a]), &mean(&visited[b])));
+        }
+    }
+    let share = |c: &Components| 100.0 * c.variances.iter().sum::<f64>() / c.total_variance.max(1e-12);
+    println!("states: two components hold {:.0} % of the variance", share(&states));
+    println!("parameters: two components hold {:.0} % of the variance", share(&components));
+    println!("correlation of distances: {:.2}", correlation(&of_parameters, &of_states));
+    println!("wrote {}", arguments.out.display());
+    Ok(())
+}
+
+/// Normalised observations that a policy visits while it goes straight ahead.
+fn states(model: &Model, pack: &Arc<CharacterPack>, node: usize, ticks: usize) -> Vec<Vec<f32>> {
+    let mut subject = Subject::new(model, pack, &pack.graph().nodes()[node].name);
+    let stands = pack.graph().nodes()[node].speed_mps == Some(0.0);
+    let mut rows = Vec::with_capacity(ticks);
+    for _ in 0..ticks {
+        let ahead = subject.position() + glam::Vec2::new(TARGET_RANGE_METRES, 0.0);
+        let command = Command { target: (!stands).then_some(ahead), goal: Goal::Stay, ..Command::default() };
+        subject.tick(&command);
+        rows.push(subject.controller.policy_input()[..OBSERVATION_LEN].to_vec());
+    }
+    rows
+}
+
+fn parameters(mlp: &Mlp) -> Vec<f32> {
+    mlp.layers().iter().flat_map(|l| l.weight().chain(l.bias()).collect::<Vec<_>>()).collect()
+}
+
+fn mean(rows: &[Vec<f32>]) -> Vec<f32> {
+    let width = rows.first().map_or(0, Vec::len);
+    let n = rows.len().max(1) as f32;
+    (0..width).map(|i| rows.iter().map(|r| r[i]).sum::<f32>() / n).collect()
+}
+
+fn distance(a: &[f32], b: &[f32]) -> f64 {
+    a.iter().zip(b).map(|(a, b)| f64::from(a - b).powi(2)).sum::<f64>().sqrt()
+}

@@ -1,0 +1,47 @@
+//! Measures of a pack, through the same controller as a game: survival along paths, reached speed, get-up, roll,
+//! pushes, and distances between parameters. Needs no clips.
+
+mod paths;
+mod push;
+mod report;
+mod skills;
+mod subject;
+
+pub use paths::{measure_coordinates, measure_sweep};
+pub use push::measure_push;
+pub use report::{Evaluation, ModeReport, PathReport, PushReport, RateReport, SpeedPoint, evaluate};
+pub use skills::{measure_get_up, measure_roll};
+pub use subject::{Subject, Wanderer};
+
+/// How much is measured.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Effort {
+    /// Characters in a measure of survival.
+    pub characters: usize,
+    /// Seconds each of them walks.
+    pub secs: f32,
+    /// Coordinates along a path.
+    pub coordinates: usize,
+    /// Characters at each coordinate.
+    pub characters_each: usize,
+    /// Ragdoll drops and rolls.
+    pub drops: usize,
+    /// Characters that are pushed at each force.
+    pub pushed: usize,
+}
+
+impl Effort {
+    /// What figures are published from.
+    pub const FULL: Effort = Effort {
+        characters: 256,
+        secs: 60.0,
+        coordinates: 11,
+        characters_each: 32,
+        drops: 1000,
+        pushed: 64,
+    };
+
+    /// Less than a minute on two idle cores, for a first look.
+    pub const QUICK: Effort =
+        Effort { characters: 32, secs: 20.0, coordinates: 5, characters_each: 8, drops: 64, pushed: 16 };
+}

@@ -1,0 +1,97 @@
+//! Survival and speed along a path.
+
+use std::sync::Arc;
+
+use physics_bridge::Model;
+use policy_core::{BlendMode, CharacterPack, Heading};
+use rayon::prelude::*;
+
+use super::subject::{SETTLE_SECS, Subject, Wanderer};
+use crate::Rng;
+use crate::env::DT_SECS;
+
+/// What one character met.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Walked {
+    /// Falls.
+    pub falls: u32,
+    /// Minutes measured.
+    pub minutes: f32,
+    /// Mean speed along the wanted direction, metres per second.
+    pub speed_mps: f32,
+}
+
+fn walk(
+    model: &Model,
+    pack: &Arc<CharacterPack>,
+    path: usize,
+    mode: BlendMode,
+    coordinate: Option<f32>,
+    (secs, seed): (f32, u64),
+) -> Walked {
+    let graph = pack.graph();
+    let nodes = &graph.paths()[path];
+    // The second node of a path is where a full stick and free triggers are: Walk.
+    let start = &graph.nodes()[nodes.nodes[1]].name;
+    let mut subject = Subject::new(model, pack, start);
+    let mut player = Wanderer::new(Rng::new(seed, 7), path, nodes.end(), mode, coordinate);
+    let mut walked = Walked::default();
+    let (mut along, mut ticks) = (0.0, 0);
+    let mut settled = 0.0;
+    for _ in 0..((secs + SETTLE_SECS) / DT_SECS) as u32 {
+        let before = subject.position();
+        let command = player.command(before);
+        let sound = subject.tick(&command);
+        settled += DT_SECS;
+        if settled > SETTLE_SECS {
+            along += (subject.position() - before).dot(player.direction());
+            ticks += 1;
+        }
+        if !sound || subject.controller.report().fallen {
+            walked.falls += 1;
+            subject.reset(Heading::from_angle(player.direction().to_angle()));
+            settled = 0.0;
+        }
+    }
+    walked.minutes = (secs + SETTLE_SECS) / 60.0;
+    walked.speed_mps = along / (ticks.max(1) as f32 * DT_SECS);
+    walked
+}
+
+/// Falls per character-minute under a trigger that sweeps over the whole path, with random turns.
+#[must_use]
+pub fn measure_sweep(
+    model: &Model,
+    pack: &Arc<CharacterPack>,
+    path: usize,
+    mode: BlendMode,
+    (characters, secs): (usize, f32),
+) -> f32 {
+    let each = (0..characters).into_par_iter();
+    let walked: Vec<Walked> =
+        each.map(|i| walk(model, pack, path, mode, None, (secs, i as u64))).collect();
+    falls_per_minute(&walked)
+}
+
+/// Falls per character-minute and mean speed at a coordinate, with random turns.
+#[must_use]
+pub fn measure_coordinates(
+    model: &Model,
+    pack: &Arc<CharacterPack>,
+    path: usize,
+    mode: BlendMode,
+    coordinate: f32,
+    (characters, secs): (usize, f32),
+) -> (f32, f32) {
+    let each = (0..characters).into_par_iter();
+    let walked: Vec<Walked> =
+        each.map(|i| walk(model, pack, path, mode, Some(coordinate), (secs, i as u64))).collect();
+    let speed = walked.iter().map(|w| w.speed_mps).sum::<f32>() / walked.len().max(1) as f32;
+    (falls_per_minute(&walked), speed)
+}
+
+fn falls_per_minute(walked: &[Walked]) -> f32 {
+    let falls: u32 = walked.iter().map(|w| w.falls).sum();
+    let minutes: f32 = walked.iter().map(|w| w.minutes).sum();
+    falls as f32 / minutes.max(1e-6)
+}

@@ -1,0 +1,134 @@
+//! All measures of a pack, in the shape of the JSON file.
+
+use std::collections::BTreeMap;
+use std::sync::Arc;
+
+use glam::Vec3;
+use physics_bridge::Model;
+use policy_core::{BlendMode, CharacterPack};
+use serde::Serialize;
+
+use super::{Effort, measure_coordinates, measure_get_up, measure_push, measure_roll, measure_sweep};
+
+/// All measures of a pack.
+#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+pub struct Evaluation {
+    /// By path, and in it by blend mode.
+    pub paths: BTreeMap<String, PathReport>,
+    /// Limp drops.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub getup: Option<RateReport>,
+    /// Rolls.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub roll: Option<RateReport>,
+    /// By skill.
+    pub push: BTreeMap<String, PushReport>,
+    /// Squared distance of the parameters at the two ends of each edge.
+    pub parameter_distance: BTreeMap<String, f64>,
+}
+
+/// Measures along one path.
+#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+pub struct PathReport {
+    /// By blend mode.
+    #[serde(flatten)]
+    pub modes: BTreeMap<String, ModeReport>,
+    /// At fixed coordinates, blending parameters.
+    pub speed: Vec<SpeedPoint>,
+}
+
+/// Measures of one blend mode.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
+pub struct ModeReport {
+    /// Under a trigger that sweeps over the path, with random turns.
+    pub falls_per_character_minute: f32,
+}
+
+/// Measures at a coordinate of a path.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
+pub struct SpeedPoint {
+    /// Place on the path.
+    pub coordinate: f32,
+    /// Interpolated from the speeds of the nodes.
+    pub commanded_mps: f32,
+    /// Mean along the wanted direction, turns included.
+    pub reached_mps: f32,
+    /// With random turns.
+    pub falls_per_character_minute: f32,
+}
+
+/// A share of tries that went well.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
+pub struct RateReport {
+    /// 0 to 1.
+    pub success: f32,
+    /// Tries.
+    pub tries: usize,
+}
+
+/// Largest pushes of 0.2 s that 95 of 100 survive, in steps of 15 N.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
+pub struct PushReport {
+    /// Along the way it goes.
+    pub forward_newton: f32,
+    /// Across it.
+    pub sideways_newton: f32,
+}
+
+/// Measures everything; `note` is told what comes next.
+#[must_use]
+pub fn evaluate(
+    model: &Model,
+    pack: &Arc<CharacterPack>,
+    effort: &Effort,
+    mut note: impl FnMut(&str),
+) -> Evaluation {
+    let graph = pack.graph();
+    let mut evaluation = Evaluation::default();
+    for edge in graph.edges() {
+        let [a, b] = edge.nodes;
+        let name = format!("{}-{}", graph.nodes()[a].name, graph.nodes()[b].name);
+        let distance = pack.policies()[a].squared_distance(&pack.policies()[b]);
+        evaluation.parameter_distance.insert(name, distance);
+    }
+    for (index, path) in graph.paths().iter().enumerate() {
+        note(&format!("path {}", path.name));
+        let mut report = PathReport::default();
+        for mode in BlendMode::ALL {
+            let falls = measure_sweep(model, pack, index, mode, (effort.characters, effort.secs));
+            report.modes.insert(mode.name().into(), ModeReport { falls_per_character_minute: falls });
+        }
+        for i in 0..effort.coordinates {
+            let coordinate = path.end() * i as f32 / (effort.coordinates - 1).max(1) as f32;
+            let at = (effort.characters_each, effort.secs);
+            let (falls, reached) =
+                measure_coordinates(model, pack, index, BlendMode::Parameters, coordinate, at);
+            report.speed.push(SpeedPoint {
+                coordinate,
+                commanded_mps: commanded(pack, index, coordinate),
+                reached_mps: reached,
+                falls_per_character_minute: falls,
+            });
+        }
+        evaluation.paths.insert(path.name.clone(), report);
+    }
+    for (index, node) in graph.nodes().iter().enumerate().filter(|(_, n)| n.fall_height.is_some()) {
+        note(&format!("pushes on {}", node.name));
+        let push = |direction| measure_push(model, pack, index, direction, effort.pushed);
+        let report = PushReport { forward_newton: push(Vec3::X), sideways_newton: push(Vec3::Y) };
+        evaluation.push.insert(node.name.clone(), report);
+    }
+    note("get-up and roll");
+    let rate = |success| RateReport { success, tries: effort.drops };
+    evaluation.getup = measure_get_up(model, pack, "get_up", effort.drops).map(rate);
+    evaluation.roll = measure_roll(model, pack, "roll", effort.drops).map(rate);
+    evaluation
+}
+
+/// Speed commanded at a coordinate: that of the nodes, interpolated.
+fn commanded(pack: &CharacterPack, path: usize, coordinate: f32) -> f32 {
+    let graph = pack.graph();
+    let position = graph.paths()[path].position(coordinate);
+    let speed = |node: usize| graph.nodes()[node].speed_mps.unwrap_or(0.0);
+    speed(position.from) + position.t * (speed(position.to) - speed(position.from))
+}

@@ -1,0 +1,112 @@
+//! Episodic skills: out of a heap of limbs onto the feet, and over the shoulder back into a walk.
+
+use std::sync::Arc;
+
+use glam::Vec2;
+use physics_bridge::{Model, Pose, QPOS_LEN, QVEL_LEN};
+use policy_core::{Body, CharacterPack, Command, DOF_COUNT, Goal, JointTargets, SkillEnd, TARGET_RANGE_METRES};
+use rayon::prelude::*;
+
+use super::subject::{SETTLE_SECS, Subject};
+use crate::Rng;
+use crate::env::DT_SECS;
+
+/// Seconds within which a dropped character must stand.
+const GET_UP_SECS: f32 = 5.0;
+
+/// Seconds within which a roll must be over.
+const ROLL_SECS: f32 = 3.0;
+
+/// Share of limp drops after which the character stands within 5 s and still does a second later. `None` when the pack
+/// has no skill of this name.
+#[must_use]
+pub fn measure_get_up(model: &Model, pack: &Arc<CharacterPack>, skill: &str, drops: usize) -> Option<f32> {
+    let skill = pack.skill_named(skill)?;
+    let up = (0..drops).into_par_iter().filter(|i| gets_up(model, pack, skill, *i as u64)).count();
+    Some(up as f32 / drops.max(1) as f32)
+}
+
+fn gets_up(model: &Model, pack: &Arc<CharacterPack>, skill: usize, seed: u64) -> bool {
+    let mut subject = Subject::new(model, pack, "idle");
+    let mut rng = Rng::new(seed, 11);
+    if !drop_limp(&mut subject, &mut rng) {
+        return false;
+    }
+    let mut command = Command { skill: Some(skill), ..Command::default() };
+    let mut stood = 0.0;
+    for _ in 0..((GET_UP_SECS + 1.0) / DT_SECS) as u32 {
+        if !subject.tick(&command) {
+            return false;
+        }
+        command.skill = None;
+        let up = subject.pelvis_height() > 0.65
+            && subject.state.body(Body::Head).position.z - subject.state.ground_height > 1.1;
+        stood = if up { stood + DT_SECS } else { 0.0 };
+    }
+    // Up at the end, and so since five seconds after the drop.
+    stood >= 1.0
+}
+
+/// Drops the character in a random attitude, limp, and lets it come to rest for two seconds.
+fn drop_limp(subject: &mut Subject, rng: &mut Rng) -> bool {
+    let turn = glam::Quat::from_euler(
+        glam::EulerRot::ZYX,
+        rng.angle(),
+        rng.range(-1.6, 1.6),
+        rng.angle(),
+    );
+    let mut pose = Pose { qpos: [0.0; QPOS_LEN], qvel: [0.0; QVEL_LEN] };
+    pose.qpos[2] = 0.8;
+    pose.qpos[3..7].copy_from_slice(&[turn.w, turn.x, turn.y, turn.z].map(f64::from));
+    let (low, high) = subject.character.model().joint_limits();
+    for joint in 0..DOF_COUNT {
+        let angle = 0.5 * rng.range(low[joint], high[joint]);
+        pose.qpos[7 + joint] = f64::from(angle);
+    }
+    if subject.character.set_pose(&pose.qpos, &pose.qvel).is_err() {
+        return false;
+    }
+    for _ in 0..(2.0 / DT_SECS) as u32 {
+        let mut targets = JointTargets::default();
+        let now = subject.character.pose();
+        for (target, angle) in targets.0.iter_mut().zip(&now.qpos[7..]) {
+            *target = *angle as f32;
+        }
+        subject.character.actuate(&targets);
+        if subject.character.step().is_err() {
+            return false;
+        }
+    }
+    subject.character.sense_into(&mut subject.state);
+    true
+}
+
+/// Share of rolls out of a walk that the discriminator ends within 3 s and after which the character still walks a second
+/// later. `None` when the pack has no skill of this name.
+#[must_use]
+pub fn measure_roll(model: &Model, pack: &Arc<CharacterPack>, skill: &str, rolls: usize) -> Option<f32> {
+    let skill = pack.skill_named(skill)?;
+    let done = (0..rolls).into_par_iter().filter(|i| rolls_over(model, pack, skill, *i as u64)).count();
+    Some(done as f32 / rolls.max(1) as f32)
+}
+
+fn rolls_over(model: &Model, pack: &Arc<CharacterPack>, skill: usize, seed: u64) -> bool {
+    let back = pack.skills()[skill].returns_to;
+    let mut subject = Subject::new(model, pack, &pack.graph().nodes()[back].name);
+    let mut rng = Rng::new(seed, 13);
+    let start = ((SETTLE_SECS + rng.range(0.0, 1.0)) / DT_SECS) as u32;
+    let mut recognised = None;
+    for tick in 0..start + ((ROLL_SECS + 1.0) / DT_SECS) as u32 {
+        let target = Some(subject.position() + Vec2::new(TARGET_RANGE_METRES, 0.0));
+        let skill = (tick == start).then_some(skill);
+        let command = Command { target, goal: Goal::Node(back), skill, ..Command::default() };
+        if !subject.tick(&command) || (tick < start && subject.controller.report().fallen) {
+            return false;
+        }
+        if let Some((_, SkillEnd::Recognised)) = subject.controller.report().skill_ended {
+            recognised = Some(tick);
+        }
+    }
+    let in_time = |tick: u32| (tick - start) as f32 * DT_SECS <= ROLL_SECS;
+    recognised.is_some_and(in_time) && subject.pelvis_height() > 0.65
+}

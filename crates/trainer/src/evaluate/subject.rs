@@ -1,0 +1,150 @@
+//! One character under its controller, as in a game, and the random player that steers it.
+
+use std::sync::Arc;
+
+use glam::Vec2;
+use physics_bridge::{Character, Model};
+use policy_core::{
+    BlendMode, Body, CharacterPack, CharacterState, Command, Controller, ControllerConfig, Goal, Heading,
+    TARGET_RANGE_METRES,
+};
+
+use crate::Rng;
+use crate::env::DT_SECS;
+
+/// Speed at which an upright character is set going, metres per second.
+const START_MPS: f32 = 1.0;
+
+/// Seconds of walking before anything is measured.
+pub const SETTLE_SECS: f32 = 2.0;
+
+/// A character and its controller.
+#[derive(Debug)]
+pub struct Subject {
+    /// The body.
+    pub character: Character,
+    /// What steers it.
+    pub controller: Controller,
+    /// What it senses now.
+    pub state: CharacterState,
+}
+
+impl Subject {
+    /// A character that walks along x from the node called `start`, or from the first one. It does not get up by itself.
+    #[must_use]
+    pub fn new(model: &Model, pack: &Arc<CharacterPack>, start: &str) -> Self {
+        let start = pack.graph().node_named(start).unwrap_or(0);
+        let config = ControllerConfig { recover: false, start, ..ControllerConfig::default() };
+        let mut subject = Self {
+            character: Character::new(model),
+            controller: Controller::with_config(pack.clone(), config),
+            state: CharacterState::default(),
+        };
+        subject.reset(Heading::FORWARD);
+        subject
+    }
+
+    /// Stands it up at the origin, walking.
+    pub fn reset(&mut self, heading: Heading) {
+        let speed = if self.controller.report().position.as_node() == Some(0) { 0.0 } else { START_MPS };
+        self.controller.reset();
+        self.character.stand_at(0.0, 0.0, heading, speed).expect("zeros are finite");
+        self.character.sense_into(&mut self.state);
+    }
+
+    /// One control tick. False when the physics diverged.
+    pub fn tick(&mut self, command: &Command) -> bool {
+        let targets = *self.controller.tick(&self.state, command, DT_SECS);
+        self.character.actuate(&targets);
+        let sound = self.character.step().is_ok();
+        self.character.sense_into(&mut self.state);
+        sound
+    }
+
+    /// Horizontal place of the pelvis.
+    #[must_use]
+    pub fn position(&self) -> Vec2 {
+        self.state.body(Body::Pelvis).position.truncate()
+    }
+
+    /// Height of the pelvis above the ground, metres.
+    #[must_use]
+    pub fn pelvis_height(&self) -> f32 {
+        self.state.body(Body::Pelvis).position.z - self.state.ground_height
+    }
+}
+
+/// A random player: new directions every 2 to 5 s, turns of up to 90 degrees, a trigger that sweeps or rests.
+#[derive(Clone, Copy, Debug)]
+pub struct Wanderer {
+    rng: Rng,
+    path: usize,
+    end: f32,
+    mode: BlendMode,
+    direction: f32,
+    turn_in: f32,
+    /// Coordinate on the path now.
+    pub coordinate: f32,
+    sweep_mps: f32,
+    rising: bool,
+}
+
+impl Wanderer {
+    /// A player on a path, at `coordinate` and resting there, or sweeping over the whole path when `None`.
+    #[must_use]
+    pub fn new(rng: Rng, path: usize, end: f32, mode: BlendMode, coordinate: Option<f32>) -> Self {
+        let mut player = Self {
+            rng,
+            path,
+            end,
+            mode,
+            direction: 0.0,
+            turn_in: SETTLE_SECS,
+            coordinate: coordinate.unwrap_or(1.0_f32.min(end)),
+            sweep_mps: 0.0,
+            rising: true,
+        };
+        if coordinate.is_none() {
+            player.draw_sweep();
+        }
+        player
+    }
+
+    /// A whole sweep up and down takes 4 to 8 s.
+    fn draw_sweep(&mut self) {
+        self.sweep_mps = 2.0 * self.end / self.rng.range(4.0, 8.0);
+    }
+
+    /// Unit vector it wants to go along.
+    #[must_use]
+    pub fn direction(&self) -> Vec2 {
+        Vec2::from_angle(self.direction)
+    }
+
+    /// Next command for a character at `position`. Below the path's second node the target comes nearer, as the stick of
+    /// a pad would have it.
+    pub fn command(&mut self, position: Vec2) -> Command {
+        self.turn_in -= DT_SECS;
+        if self.turn_in <= 0.0 {
+            self.turn_in = self.rng.range(2.0, 5.0);
+            self.direction += self.rng.range(-1.0, 1.0) * std::f32::consts::FRAC_PI_2;
+        }
+        if self.sweep_mps > 0.0 {
+            let step = self.sweep_mps * DT_SECS;
+            self.coordinate += if self.rising { step } else { -step };
+            if self.coordinate >= self.end || self.coordinate <= 0.0 {
+                self.coordinate = self.coordinate.clamp(0.0, self.end);
+                self.rising = !self.rising;
+                self.draw_sweep();
+            }
+        }
+        let push = self.coordinate.min(1.0);
+        let target = position + self.direction() * (push * TARGET_RANGE_METRES);
+        Command {
+            target: (push > 0.0).then_some(target),
+            goal: Goal::Path { path: self.path, coordinate: self.coordinate },
+            mode: self.mode,
+            ..Command::default()
+        }
+    }
+}

@@ -1,0 +1,244 @@
+//! Binding trained skills into a character pack, through policy-core's own checks and writer.
+
+use std::path::{Path, PathBuf};
+
+use physics_bridge::Model;
+use policy_core::{
+    ActionScaling, BODY_NAMES, CharacterPack, DISCRIMINATOR_LAYOUT, DiscriminatorEntry, EdgeEntry, Layer, Manifest,
+    Mlp, MlpError, OBSERVATION_LAYOUT, PACK_FORMAT, PACK_VERSION, PackError, PackTensors, PathEntry, PolicyEntry,
+    SkillEntry, JOINT_NAMES,
+};
+use serde::Deserialize;
+
+use crate::checkpoint::{Checkpoint, CheckpointError};
+use crate::env::Normalisers;
+use crate::nn::Network;
+
+/// What a pack is to hold: nodes, edges, paths and skills by name. A TOML file.
+#[derive(Clone, Debug, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct PackPlan {
+    /// Name of the character.
+    pub character: String,
+    /// Skill that brings a fallen character to its feet.
+    #[serde(default)]
+    pub recovery: Option<String>,
+    /// Nodes of the graph.
+    pub policies: Vec<PlannedPolicy>,
+    /// Its edges.
+    #[serde(default)]
+    pub edges: Vec<EdgeEntry>,
+    /// Its paths.
+    #[serde(default)]
+    pub paths: Vec<PathEntry>,
+    /// Its episodic skills.
+    #[serde(default)]
+    pub skills: Vec<SkillEntry>,
+}
+
+/// A node of the graph.
+#[derive(Clone, Debug, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct PlannedPolicy {
+    /// Name of the skill that was trained.
+    pub name: String,
+    /// Pelvis height below which the character has fallen, metres.
+    #[serde(default)]
+    pub fall_height: Option<f32>,
+    /// Speed it was trained for, metres per second.
+    #[serde(default)]
+    pub speed_mps: Option<f32>,
+}
+
+/// Why a pack can't be bound.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum BindError {
+    /// The plan can't be read.
+    #[error("cannot read {}", path.display())]
+    Io {
+        /// The file.
+        path: PathBuf,
+        /// Why.
+        source: std::io::Error,
+    },
+    /// The plan is none.
+    #[error("{}: {message}", path.display())]
+    Plan {
+        /// The file.
+        path: PathBuf,
+        /// What was expected and found, with its line.
+        message: String,
+    },
+    /// A checkpoint is missing or wrong.
+    #[error(transparent)]
+    Checkpoint(#[from] CheckpointError),
+    /// A network is none that a pack can hold.
+    #[error("{role} of {skill}")]
+    Network {
+        /// Name of the skill.
+        skill: String,
+        /// Policy or discriminator.
+        role: &'static str,
+        /// What is wrong with it.
+        source: MlpError,
+    },
+    /// The parts don't fit together.
+    #[error(transparent)]
+    Pack(#[from] PackError),
+}
+
+impl PackPlan {
+    /// Reads a plan.
+    ///
+    /// # Errors
+    /// When the file can't be read, or has unknown or missing fields.
+    pub fn load(path: &Path) -> Result<Self, BindError> {
+        let text = std::fs::read_to_string(path)
+            .map_err(|source| BindError::Io { path: path.to_owned(), source })?;
+        toml::from_str(&text)
+            .map_err(|e| BindError::Plan { path: path.to_owned(), message: e.to_string() })
+    }
+
+    /// The plan without skills that `trained` refuses: their nodes, edges and episodic skills go, paths close over
+    /// the gap while an edge still joins what remains, and paths of a single node go.
+    #[must_use]
+    pub fn only(mut self, trained: impl Fn(&str) -> bool) -> Self {
+        self.policies.retain(|p| trained(&p.name));
+        self.edges.retain(|e| e.nodes.iter().all(|n| trained(n)));
+        let edges = self.edges.clone();
+        let joined = |a: &str, b: &str| {
+            edges.iter().any(|e| e.nodes.iter().any(|n| n == a) && e.nodes.iter().any(|n| n == b))
+        };
+        for path in &mut self.paths {
+            let mut kept: Vec<String> = Vec::new();
+            for node in path.nodes.drain(..).filter(|n| trained(n)) {
+                match kept.last() {
+                    Some(last) if !joined(last, &node) => break,
+                    _ => kept.push(node),
+                }
+            }
+            path.nodes = kept;
+        }
+        self.paths.retain(|p| p.nodes.len() > 1);
+        self.skills.retain(|s| trained(&s.policy) && trained(&s.returns_to));
+        for skill in &mut self.skills {
+            skill.entry.retain(|n| trained(n));
+        }
+        self.recovery = self.recovery.filter(|r| self.skills.iter().any(|s| s.name == *r));
+        self
+    }
+}
+
+/// Where a skill comes from and its networks.
+#[derive(Clone, Debug)]
+pub struct Ingredient {
+    /// Name of the skill.
+    pub skill: String,
+    /// Its policy.
+    pub actor: Network,
+    /// Its discriminator.
+    pub discriminator: Network,
+    /// Recipe, samples and seed in words.
+    pub origin: String,
+}
+
+impl Ingredient {
+    /// The skill of a run.
+    ///
+    /// # Errors
+    /// When its checkpoint is missing or wrong.
+    pub fn load(skill: &str, checkpoint: &Path) -> Result<Self, CheckpointError> {
+        let loaded = Checkpoint::load(checkpoint)?;
+        let progress = &loaded.progress;
+        Ok(Self {
+            skill: skill.into(),
+            actor: loaded.network("actor", checkpoint)?.network.clone(),
+            discriminator: loaded.network("discriminator", checkpoint)?.network.clone(),
+            origin: format!(
+                "recipe {skill}, seed {}, {} samples, {:.0} s",
+                progress.seed, progress.samples, progress.secs
+            ),
+        })
+    }
+}
+
+/// Binds the skills of `plan` into a pack.
+///
+/// # Errors
+/// When a skill of the plan is no ingredient, or policy-core refuses the parts.
+pub fn bind(
+    plan: &PackPlan,
+    ingredients: &[Ingredient],
+    normalisers: &Normalisers,
+    model: &Model,
+) -> Result<CharacterPack, BindError> {
+    let (low, high) = model.joint_limits();
+    let scaling = ActionScaling::from_joint_limits(low, high).map_err(PackError::from)?;
+    let mut judges: Vec<&str> = plan.skills.iter().filter_map(|s| s.discriminator.as_deref()).collect();
+    judges.sort_unstable();
+    judges.dedup();
+    let find = |name: &str| {
+        ingredients.iter().find(|i| i.skill == name).ok_or_else(|| CheckpointError::Content {
+            path: PathBuf::from(name),
+            expected: "a trained skill of this name".into(),
+            found: "none".into(),
+        })
+    };
+    let mut policies = Vec::new();
+    let mut entries = Vec::new();
+    for planned in &plan.policies {
+        let ingredient = find(&planned.name)?;
+        policies.push(mlp(&ingredient.actor, &planned.name, "policy")?);
+        entries.push(PolicyEntry {
+            name: planned.name.clone(),
+            layers: ingredient.actor.sizes().to_vec(),
+            fall_height: planned.fall_height,
+            speed_mps: planned.speed_mps,
+            origin: ingredient.origin.clone(),
+        });
+    }
+    let mut discriminators = Vec::new();
+    let mut judge_entries = Vec::new();
+    for name in judges {
+        let network = &find(name)?.discriminator;
+        discriminators.push(mlp(network, name, "discriminator")?);
+        judge_entries.push(DiscriminatorEntry { name: name.into(), layers: network.sizes().to_vec() });
+    }
+    let manifest = Manifest {
+        format: PACK_FORMAT.into(),
+        version: PACK_VERSION,
+        character: plan.character.clone(),
+        control_hz: physics_bridge::CONTROL_HZ as f32,
+        observation: OBSERVATION_LAYOUT.into(),
+        discriminator: DISCRIMINATOR_LAYOUT.into(),
+        bodies: BODY_NAMES.iter().map(|n| (*n).to_owned()).collect(),
+        joints: JOINT_NAMES.iter().map(|n| (*n).to_owned()).collect(),
+        action_centre: scaling.centre().to_vec(),
+        action_gain: scaling.gain().to_vec(),
+        policies: entries,
+        edges: plan.edges.clone(),
+        paths: plan.paths.clone(),
+        discriminators: judge_entries,
+        skills: plan.skills.clone(),
+        recovery: plan.recovery.clone(),
+    };
+    let tensors = PackTensors {
+        policies,
+        discriminators,
+        observation_normaliser: normalisers.observation.clone(),
+        discriminator_normaliser: normalisers.frame.clone(),
+    };
+    Ok(CharacterPack::from_parts(manifest, tensors)?)
+}
+
+/// A network as policy-core evaluates it.
+fn mlp(network: &Network, skill: &str, role: &'static str) -> Result<Mlp, BindError> {
+    let wrong = |source| BindError::Network { skill: skill.into(), role, source };
+    let layer = |range: crate::nn::LayerRange| {
+        let (weight, bias) = (&network.parameters[range.weight], &network.parameters[range.bias]);
+        Layer::from_input_major(range.inputs, range.outputs, weight, bias)
+    };
+    let layers = network.layers().into_iter().map(layer).collect::<Result<Vec<_>, _>>().map_err(wrong)?;
+    Mlp::from_layers(layers).map_err(wrong)
+}

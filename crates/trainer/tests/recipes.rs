@@ -1,0 +1,124 @@
+//! Every recipe of the project through two small iterations, parents before children, and all of them into a pack.
+
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
+use physics_bridge::Model;
+use policy_core::{Arithmetic, BODY_NAMES, CharacterPack, DOF_COUNT, MlpScratch, POLICY_INPUT_LEN};
+use trainer::clip::ClipFolder;
+use trainer::env::Normalisers;
+use trainer::nn::Pass;
+use trainer::pack::{Ingredient, PackPlan, bind};
+use trainer::recipe::Recipe;
+use trainer::run::Workplace;
+
+fn project() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("../..")
+}
+
+/// A clip of a body that stands and sways, under any name: what clip it is doesn't matter here.
+fn write_clip(folder: &Path, name: &str) {
+    let frames = 25;
+    let time = |i: usize| i as f32 / 24.0;
+    let sway = |i: usize| (std::f32::consts::TAU * time(i)).sin();
+    let rotations = |i: usize| {
+        let mut all = vec![[0.0, 0.0, 0.0, 1.0]; 15];
+        let half = 0.1 * sway(i);
+        all[1] = [0.0, half.sin(), 0.0, half.cos()];
+        all
+    };
+    let text = serde_json::json!({
+        "loop": "wrap", "bodies": BODY_NAMES, "times": (0..frames).map(time).collect::<Vec<_>>(),
+        "root_pos": (0..frames).map(|i| [0.5 * time(i), 0.0, 0.9]).collect::<Vec<_>>(),
+        "local_rot": (0..frames).map(rotations).collect::<Vec<_>>(),
+    });
+    std::fs::write(folder.join(format!("{name}.json")), text.to_string()).unwrap();
+}
+
+/// The recipe with everything that costs time made small.
+fn small(mut recipe: Recipe) -> Recipe {
+    (recipe.environment.characters, recipe.environment.steps) = (6, 4);
+    (recipe.ppo.epochs, recipe.ppo.minibatch) = (1, 12);
+    recipe.ppo.critic_hidden = vec![16];
+    recipe.discriminator.hidden = vec![16, 8];
+    (recipe.discriminator.rows, recipe.discriminator.updates) = (8, 1);
+    (recipe.discriminator.replay, recipe.discriminator.replay_rows) = (64, 8);
+    recipe
+}
+
+#[test]
+fn every_recipe_runs_and_binds_into_a_pack() {
+    let folder = tempfile::tempdir().unwrap();
+    let (motions, runs) = (folder.path().join("motions"), folder.path().join("runs"));
+    std::fs::create_dir(&motions).unwrap();
+    let recipes = project().join("assets/recipes");
+    let model = Model::load(project().join("assets/humanoid.xml")).unwrap();
+    for entry in std::fs::read_dir(&recipes).unwrap() {
+        let path = entry.unwrap().path();
+        if path.extension().is_some_and(|e| e == "toml") {
+            for clip in Recipe::load(&path).unwrap().clips {
+                write_clip(&motions, &clip.name);
+            }
+        }
+    }
+    let clips = ClipFolder::from_argument(Some(motions)).unwrap();
+    let normalisers = Normalisers::from_clips(&[clips.load("walk").unwrap()], &model).unwrap();
+    let workplace = Workplace { recipes, runs, clips, model: model.clone(), normalisers: normalisers.clone() };
+
+    let order = workplace.recipes_in_order().unwrap();
+    let mut ingredients = Vec::new();
+    for recipe in order {
+        let recipe = small(recipe);
+        let skill = recipe.skill.clone();
+        let mut run = workplace.prepare(recipe.clone(), 3, false).unwrap();
+        let before = run.training.learner.actor.clone();
+        for _ in 0..2 {
+            let report = run.advance().unwrap();
+            assert!(report.style.is_finite() && report.update.kl.is_finite(), "{skill}");
+        }
+        assert_ne!(run.training.learner.actor, before, "{skill} learned nothing");
+        run.save().unwrap();
+        let resumed = workplace.prepare(recipe, 3, true).unwrap();
+        assert_eq!(resumed.training.learner.actor, run.training.learner.actor, "{skill}");
+        assert_eq!(resumed.training.samples, 48, "{skill}");
+        ingredients.push(Ingredient::load(&skill, &workplace.checkpoint(&skill)).unwrap());
+        let metrics = std::fs::read_to_string(run.folder.join("metrics.csv")).unwrap();
+        assert_eq!(metrics.lines().count(), 3, "{skill}");
+    }
+
+    let plan = PackPlan::load(&project().join("assets/recipes/pack/humanoid.toml")).unwrap();
+    let bytes = bind(&plan, &ingredients, &normalisers, &model).unwrap().to_bytes();
+    let pack = Arc::new(CharacterPack::from_bytes(&bytes).unwrap());
+    assert_eq!(pack.policies().len(), plan.policies.len());
+    the_pack_acts_as_the_trainer(&pack, &ingredients);
+
+    let partial = plan.only(|skill| skill != "jog");
+    assert!(partial.paths.iter().find(|p| p.name == "speed").is_some_and(|p| p.nodes == ["idle", "walk"]));
+    bind(&partial, &ingredients, &normalisers, &model).unwrap();
+}
+
+fn the_pack_acts_as_the_trainer(pack: &CharacterPack, ingredients: &[Ingredient]) {
+    let input: Vec<f32> = (0..POLICY_INPUT_LEN).map(|i| (i as f32 * 0.7).sin()).collect();
+    for (node, policy) in pack.graph().nodes().iter().zip(pack.policies()) {
+        let network = &ingredients.iter().find(|i| i.skill == node.name).unwrap().actor;
+        let mut pass = Pass::new(network.sizes(), 1);
+        pass.forward(network, None, &input);
+        let mut action = [0.0; DOF_COUNT];
+        policy.evaluate_into(Arithmetic::Reproducible, &input, &mut MlpScratch::for_mlp(policy), &mut action);
+        let worst = action.iter().zip(pass.output(1)).map(|(a, b)| (a - b).abs()).fold(0.0, f32::max);
+        assert!(worst < 1e-5, "{}: {worst}", node.name);
+    }
+}
+
+#[test]
+fn unknown_fields_and_senseless_values_are_named() {
+    let parse = |text: &str| Recipe::parse(Path::new("x.toml"), text).unwrap_err().to_string();
+    let good = "skill = \"a\"\nclips = [{ name = \"walk\" }]\n[[phases]]\nsamples = 1\ntask = 0.5\n";
+    assert!(Recipe::parse(Path::new("x.toml"), good).is_ok());
+    assert!(parse(&format!("{good}[ppo]\ngama = 0.9\n")).contains("gama"));
+    assert!(parse(&format!("{good}[ppo]\ngamma = 1.0\n")).contains("ppo.gamma"));
+    assert!(parse(&good.replace("0.5", "1.5")).contains("phases.task"));
+    assert!(parse(&good.replace("\"a\"", "\"../a\"")).contains("skill"));
+    assert!(parse(&good.replace("skill = \"a\"", "skill = \"a\"\nedge = true")).contains("edge"));
+    assert!(parse("").contains("skill"));
+}
