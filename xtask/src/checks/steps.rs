@@ -18,6 +18,7 @@ pub const STEPS: &[Step] = &[
     Step { name: "cargo-deny", run: |workspace, options| deny::step(workspace, options.install_deny) },
     Step { name: "no_std: wasm32", run: |workspace, _| no_std(workspace, "wasm32-unknown-unknown") },
     Step { name: "no_std: thumbv7em", run: |workspace, _| no_std(workspace, "thumbv7em-none-eabihf") },
+    Step { name: "bits without vector units", run: plain_bits },
     Step { name: "clippy", run: clippy },
     Step { name: "documentation", run: documentation },
     Step { name: "tests", run: tests },
@@ -56,6 +57,12 @@ fn no_std(workspace: &Workspace, target: &str) -> Result<Verdict> {
     }
     let arguments = ["build", "-p", "policy-core", "--no-default-features", "--target", target];
     run(workspace.cargo().args(arguments))?;
+    Ok(Verdict::Passed)
+}
+
+/// Runs the blends' tests, the pinned bits among them, on the plain code that no vector unit was detected for.
+fn plain_bits(workspace: &Workspace, _: Options) -> Result<Verdict> {
+    run(workspace.cargo().args(["test", "-p", "policy-core", "--no-default-features", "--test", "blend"]))?;
     Ok(Verdict::Passed)
 }
 
