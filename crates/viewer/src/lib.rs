@@ -1,11 +1,19 @@
 //! The demo: draws the humanoid, reads pad, keyboard and mouse, and shows what the policies do.
 
+pub mod analysis;
+pub mod app;
 pub mod assets;
 pub mod camera;
+pub mod cli;
+pub mod desk;
 pub mod gpu;
 pub mod mannequin;
 pub mod mesh;
+pub mod overlay;
+pub mod pads;
+mod panels;
+pub mod recorder;
 pub mod render;
 pub mod sim;
-pub mod cli;
 pub mod stage;
+pub mod window;

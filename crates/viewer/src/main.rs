@@ -1,6 +1,7 @@
 //! `policy-space`: the demo in a window, without one, and its benchmarks.
 
 use clap::Parser as _;
+use viewer::cli::open::open;
 use viewer::cli::{Cli, Task, bench, headless};
 
 fn main() -> anyhow::Result<()> {
@@ -22,6 +23,10 @@ fn main() -> anyhow::Result<()> {
             );
             Ok(())
         }
-        None => anyhow::bail!("the window is not there yet; --headless is"),
+        None => {
+            let mut opened = open(&cli.demo)?;
+            opened.app.start_analysis();
+            viewer::window::run(&cli.demo, opened.app, opened.mesh, opened.layout)
+        }
     }
 }

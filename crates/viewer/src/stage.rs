@@ -27,7 +27,13 @@ pub struct Shown {
 
 impl Default for Shown {
     fn default() -> Self {
-        Self { collision_shapes: false, target: true, trail: true, contact_forces: false, centre_of_mass: false }
+        Self {
+            collision_shapes: false,
+            target: true,
+            trail: true,
+            contact_forces: false,
+            centre_of_mass: false,
+        }
     }
 }
 
@@ -80,7 +86,8 @@ impl Trail {
             let corners = [(*a - across, i), (*a + across, i), (*b + across, i + 1), (*b - across, i + 1)];
             for corner in [0, 1, 2, 0, 2, 3] {
                 let (position, at) = corners[corner];
-                let vertex = crate::render::RibbonVertex { position: position.to_array(), colour: colour(at) };
+                let vertex =
+                    crate::render::RibbonVertex { position: position.to_array(), colour: colour(at) };
                 scene.ribbons.push(vertex);
             }
         }

@@ -49,7 +49,8 @@ pub fn crowd(bench: Bench) -> anyhow::Result<()> {
     };
     let characters = (0..CROWD).map(stand).collect::<anyhow::Result<Vec<_>>>()?;
     let mut crowd = Crowd::new(characters, None)?;
-    let config = ControllerConfig { arithmetic: Arithmetic::Fused, start: walk, ..ControllerConfig::default() };
+    let config =
+        ControllerConfig { arithmetic: Arithmetic::Fused, start: walk, ..ControllerConfig::default() };
     let mut minds: Vec<Mind> = (0..CROWD)
         .map(|index| Mind {
             controller: Controller::with_config(Arc::clone(&pack), config),
@@ -95,7 +96,8 @@ pub fn crowd(bench: Bench) -> anyhow::Result<()> {
     let realtime = |secs: f64| (CROWD * TICKS) as f64 / secs / f64::from(CONTROL_HZ);
     let (full, bare) = (realtime(best_full), realtime(best_bare));
     if bench.json {
-        let object = json!({ "characters_realtime": full, "bare_mujoco_characters": bare, "policy_share": share });
+        let object =
+            json!({ "characters_realtime": full, "bare_mujoco_characters": bare, "policy_share": share });
         println!("{object}");
     } else {
         println!("characters in real time, 30 Hz control, 120 Hz physics, {} threads", crowd.threads());

@@ -1,21 +1,22 @@
 //! The demo without a window: a scripted pad, a report, pictures through the same renderer.
 
-use std::io::Write as _;
 use std::path::{Path, PathBuf};
+use std::time::Instant;
 
 use anyhow::{Context as _, bail};
 use gamepad::Script;
-use policy_core::{Body, GamepadState};
+use policy_core::GamepadState;
 
+use super::Demo;
+use super::open::open;
 use super::report::Report;
-use super::{Demo, load};
-use crate::assets;
-use crate::camera::Camera;
+use crate::analysis::Analysis;
+use crate::app::App;
+use crate::desk::Desk;
 use crate::gpu::Gpu;
 use crate::mesh::SkinnedMesh;
-use crate::render::{OffScreen, RenderConfig, Renderer, Scene};
-use crate::sim::{Blowup, LIE_SECS, SimConfig, Simulation, TICK_SECS};
-use crate::stage::{Shown, Trail, ground_grid, set_scene};
+use crate::render::OffScreen;
+use crate::sim::{Blowup, LIE_SECS, TICK_SECS};
 
 /// Runs the demo without a window.
 ///
@@ -37,11 +38,9 @@ pub fn run(demo: &Demo) -> anyhow::Result<Report> {
 
 struct Headless<'a> {
     demo: &'a Demo,
-    sim: Simulation,
+    app: App,
     script: Option<Script>,
     seconds: f64,
-    camera: Camera,
-    trail: Trail,
     painter: Option<Painter>,
     blowups: usize,
     dumps: Vec<String>,
@@ -51,60 +50,48 @@ impl<'a> Headless<'a> {
     fn new(demo: &'a Demo) -> anyhow::Result<Self> {
         let script = demo.script.as_deref().map(Script::load).transpose()?;
         let seconds = demo.seconds.or(script.as_ref().map(Script::duration)).unwrap_or(10.0);
-        let pack = load::pack(demo.pack.as_deref())?;
-        let config =
-            SimConfig { ground: demo.terrain, characters: demo.characters, seed: demo.seed, history: false };
-        let mut sim = Simulation::new(assets::HUMANOID_MJCF, pack, config)?;
-        sim.overrides.mode = demo.mode;
-        if let Some(mode) = demo.ghost {
-            sim.start_ghost(mode);
+        let opened = open(demo)?;
+        let mut app = opened.app;
+        if let Some(complaint) = app.notice.take() {
+            bail!("{complaint}");
         }
-        let mut camera = Camera::default();
-        camera.distance = demo.distance.unwrap_or(camera.distance);
-        let player = sim.player();
-        camera.settle(player.state.body(Body::Pelvis).position, player.state.ground_height);
+        if demo.panels {
+            app.analysis = Analysis::of(app.sim.pack());
+        }
         let painter = match &demo.frames {
-            Some(folder) => Some(Painter::new(demo, folder, &sim)?),
+            Some(folder) => Some(Painter::new(demo, folder, opened.mesh, &mut app)?),
             None => None,
         };
-        let trail = Trail::default();
-        Ok(Self { demo, sim, script, seconds, camera, trail, painter, blowups: 0, dumps: Vec::new() })
+        Ok(Self { demo, app, script, seconds, painter, blowups: 0, dumps: Vec::new() })
     }
 
     fn tick(&mut self, tick: u64) -> anyhow::Result<()> {
         let start = tick as f64 * f64::from(TICK_SECS);
         let pad = self.script.as_ref().map_or_else(GamepadState::default, |s| s.state_at(start));
-        for blowup in self.sim.tick(&pad, self.camera.heading()) {
+        (self.app.pad.raw, self.app.pad.state) = (pad, pad);
+        for blowup in self.app.tick() {
             self.keep(&blowup)?;
+            self.app.sim.stand_up(blowup.character);
         }
-        self.trail.follow(&self.sim);
         if self.demo.trace && tick % 15 == 0 {
-            self.trace(start)?;
+            super::trace(&self.app);
         }
-        let fps = f64::from(self.demo.fps);
-        let Some(painter) = &mut self.painter else {
-            return Ok(());
-        };
         let mut last = 0.0;
-        // Pictures that fall into this tick, each between its two ends.
-        loop {
-            let due = painter.drawn as f64 / fps;
-            let alpha = ((due - start) / f64::from(TICK_SECS)) as f32;
-            if alpha > 1.0 - 1e-4 {
-                break;
+        if let Some(painter) = &mut self.painter {
+            // Pictures that fall into this tick, each between its two ends.
+            loop {
+                let due = painter.drawn as f64 / f64::from(self.demo.fps);
+                let alpha = ((due - start) / f64::from(TICK_SECS)) as f32;
+                if alpha > 1.0 - 1e-4 {
+                    break;
+                }
+                let alpha = alpha.max(0.0);
+                self.app.follow((alpha - last) * TICK_SECS, alpha);
+                painter.paint(&mut self.app, alpha)?;
+                last = alpha;
             }
-            let alpha = alpha.max(0.0);
-            let player = self.sim.player();
-            let pelvis = player.poses(alpha).positions[0];
-            let dt = (alpha - last) * TICK_SECS;
-            self.camera.advance(dt, pad.right_stick, pelvis, player.heading(), player.state.ground_height);
-            painter.paint(&self.sim, &self.camera, alpha, &self.trail, &pad)?;
-            last = alpha;
         }
-        let player = self.sim.player();
-        let pelvis = player.state.body(Body::Pelvis).position;
-        let dt = (1.0 - last) * TICK_SECS;
-        self.camera.advance(dt, pad.right_stick, pelvis, player.heading(), player.state.ground_height);
+        self.app.follow((1.0 - last) * TICK_SECS, 1.0);
         Ok(())
     }
 
@@ -122,34 +109,13 @@ impl<'a> Headless<'a> {
         Ok(())
     }
 
-    fn trace(&self, time: f64) -> anyhow::Result<()> {
-        let player = self.sim.player();
-        let report = player.report();
-        let nodes = self.sim.pack().graph().nodes();
-        let at = player.state.body(Body::Pelvis).position;
-        writeln!(
-            std::io::stderr(),
-            "{time:6.2} s  {} -> {} {:.2}  at {:6.2} {:6.2} {:5.2}  {:.2} m/s{}{}",
-            nodes[report.position.from].name,
-            nodes[report.position.to].name,
-            report.position.t,
-            at.x,
-            at.y,
-            at.z,
-            player.speed(),
-            report.skill.map_or(String::new(), |s| format!("  {}", self.sim.pack().skills()[s.skill].name)),
-            if player.is_down() { "  down" } else { "" },
-        )?;
-        Ok(())
-    }
-
     fn report(self) -> Report {
-        let totals = self.sim.totals();
-        let characters = self.sim.actors().len();
+        let totals = self.app.sim.totals();
+        let characters = self.app.sim.actors().len();
         let ticks = totals.character_ticks as f64;
         let distance_m = totals.distance_m / characters as f64;
-        let after_a_fall = match self.sim.pack().recovery() {
-            Some(skill) => format!("the skill {} is started", self.sim.pack().skills()[skill].name),
+        let after_a_fall = match self.app.sim.pack().recovery() {
+            Some(skill) => format!("the skill {} is started", self.app.sim.pack().skills()[skill].name),
             None => format!("no skill to rise in the pack: stood up after {LIE_SECS} s"),
         };
         Report {
@@ -170,58 +136,50 @@ impl<'a> Headless<'a> {
             policy_microseconds_per_tick: totals.policy.as_secs_f64() * 1e6 / ticks,
             state_hash: totals.hash.to_string(),
             frames: self.painter.as_ref().map_or(0, |p| p.drawn),
-            adapter: self.painter.map(|p| p.gpu.adapter_name),
+            adapter: self.painter.as_ref().map(|_| self.app.adapter.clone()),
         }
     }
 }
 
 /// Draws pictures into a folder.
 struct Painter {
-    gpu: Gpu,
-    renderer: Renderer,
-    target: OffScreen,
-    scene: Scene,
-    shown: Shown,
+    desk: Desk,
+    size: [u32; 2],
+    panels: bool,
     around: f32,
     folder: PathBuf,
     drawn: usize,
 }
 
 impl Painter {
-    fn new(demo: &Demo, folder: &Path, sim: &Simulation) -> anyhow::Result<Self> {
+    fn new(demo: &Demo, folder: &Path, mesh: SkinnedMesh, app: &mut App) -> anyhow::Result<Self> {
         std::fs::create_dir_all(folder)
             .with_context(|| format!("cannot make the folder {}", folder.display()))?;
         let gpu = Gpu::off_screen()?;
-        let mesh: SkinnedMesh = match load::mesh(demo.mesh.as_deref())? {
-            (mesh, None) => mesh,
-            (_, Some(complaint)) => bail!("{complaint}"),
-        };
-        let config = RenderConfig { shadow_taps: 16, ..RenderConfig::for_adapter(gpu.is_software) };
-        let mut renderer = Renderer::new(&gpu, OffScreen::FORMAT, config, mesh);
-        let outside = sim.model().height_at(1e4, 1e4);
-        renderer.set_ground(ground_grid(sim.model().height_field(), outside).as_ref());
+        app.adapter.clone_from(&gpu.adapter_name);
         Ok(Self {
-            target: OffScreen::new(&gpu, demo.size),
-            gpu,
-            renderer,
-            scene: Scene::default(),
-            shown: Shown::default(),
+            desk: Desk::new(&gpu, OffScreen::FORMAT, mesh),
+            size: demo.size,
+            panels: demo.panels,
             around: demo.view_angle.to_radians(),
             folder: folder.to_owned(),
             drawn: 0,
         })
     }
 
-    fn paint(
-        &mut self,
-        sim: &Simulation,
-        camera: &Camera,
-        alpha: f32,
-        trail: &Trail,
-        _pad: &GamepadState,
-    ) -> anyhow::Result<()> {
-        set_scene(&mut self.scene, sim, camera, self.around, (alpha, &self.shown, trail));
-        let picture = self.renderer.picture(&self.target, &self.scene)?;
+    /// Draws the world `alpha` of the way into its last tick.
+    fn paint(&mut self, app: &mut App, alpha: f32) -> anyhow::Result<()> {
+        app.clock.set_alpha(alpha);
+        let start = Instant::now();
+        let [width, height] = self.size.map(|s| s as f32);
+        let input = egui::RawInput {
+            screen_rect: Some(egui::Rect::from_min_size(egui::Pos2::ZERO, egui::vec2(width, height))),
+            time: Some(self.drawn as f64 / 30.0),
+            ..Default::default()
+        };
+        let output = self.desk.panels(app, input, self.around);
+        let picture = self.desk.picture(app, output, self.size, self.panels)?;
+        app.plots.draw.push(start.elapsed().as_secs_f32() * 1e3);
         let path = self.folder.join(format!("frame_{:05}.png", self.drawn));
         picture.save(&path).with_context(|| format!("cannot write {}", path.display()))?;
         self.drawn += 1;

@@ -3,13 +3,16 @@
 pub mod bench;
 pub mod headless;
 pub mod load;
+pub mod open;
 mod report;
 
+use std::io::Write as _;
 use std::path::PathBuf;
 
 use clap::{Args, Parser, Subcommand};
 use policy_core::BlendMode;
 
+use crate::app::App;
 use crate::sim::{Ground, MAX_CHARACTERS};
 
 /// Steer a physics-based humanoid by blending the parameters of tiny policies.
@@ -83,7 +86,13 @@ pub struct Demo {
     #[arg(long, requires = "frames")]
     pub panels: bool,
     /// Degrees by which pictures are taken from another side than the pad steers from.
-    #[arg(long, default_value_t = 35.0, value_name = "DEGREES", requires = "headless", allow_negative_numbers = true)]
+    #[arg(
+        long,
+        default_value_t = 35.0,
+        value_name = "DEGREES",
+        requires = "headless",
+        allow_negative_numbers = true
+    )]
     pub view_angle: f32,
     /// Distance of the camera, metres.
     #[arg(long, value_name = "METRES", value_parser = distance)]
@@ -118,6 +127,28 @@ pub struct Demo {
     /// Print what the player's character does to standard error, twice a second.
     #[arg(long)]
     pub trace: bool,
+}
+
+/// Writes one line of what the player does to standard error.
+pub fn trace(app: &App) {
+    let player = app.sim.player();
+    let position = player.report().position;
+    let nodes = app.sim.pack().graph().nodes();
+    let at = player.state.body(policy_core::Body::Pelvis).position;
+    // Where standard error is closed there is nobody to tell.
+    let _ = writeln!(
+        std::io::stderr(),
+        "tick {} {} {} {:.2} at {:.3} {:.3} {:.3} speed {:.2}{}",
+        app.sim.ticks(),
+        nodes[position.from].name,
+        nodes[position.to].name,
+        position.t,
+        at.x,
+        at.y,
+        at.z,
+        player.speed(),
+        if player.is_down() { " down" } else { "" },
+    );
 }
 
 fn size(text: &str) -> Result<[u32; 2], String> {

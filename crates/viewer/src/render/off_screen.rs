@@ -20,6 +20,12 @@ impl OffScreen {
     /// A picture of `size` (width, height), at least one pixel each way.
     #[must_use]
     pub fn new(gpu: &Gpu, size: [u32; 2]) -> Self {
+        Self::with_format(gpu, size, Self::FORMAT)
+    }
+
+    /// The same in another format of four bytes a pixel, red first or blue first.
+    #[must_use]
+    pub fn with_format(gpu: &Gpu, size: [u32; 2], format: wgpu::TextureFormat) -> Self {
         let size = size.map(|s| s.max(1));
         let texture = gpu.device.create_texture(&wgpu::TextureDescriptor {
             label: Some("off screen"),
@@ -27,7 +33,7 @@ impl OffScreen {
             mip_level_count: 1,
             sample_count: 1,
             dimension: wgpu::TextureDimension::D2,
-            format: Self::FORMAT,
+            format,
             usage: wgpu::TextureUsages::RENDER_ATTACHMENT | wgpu::TextureUsages::COPY_SRC,
             view_formats: &[],
         });
@@ -84,6 +90,10 @@ impl OffScreen {
             let rows = mapped.chunks_exact(stride(self.size) as usize);
             rows.flat_map(|padded| &padded[..row]).copied().collect()
         };
+        let mut pixels: Vec<u8> = pixels;
+        if self.texture.format().remove_srgb_suffix() == wgpu::TextureFormat::Bgra8Unorm {
+            pixels.chunks_exact_mut(4).for_each(|pixel| pixel.swap(0, 2));
+        }
         self.buffer.unmap();
         Ok(RgbaImage::from_raw(self.size[0], self.size[1], pixels).expect("rows times width times four"))
     }

@@ -149,7 +149,7 @@ impl Simulation {
     }
 
     /// Runs one control tick under `pad`, for a camera that looks along `camera`. Characters that blow up are
-    /// back in their state before it and are stood up again; each is answered.
+    /// back in their state before it, and are answered.
     pub fn tick(&mut self, pad: &GamepadState, camera: Heading) -> Vec<Blowup> {
         let start = Instant::now();
         let command = self.command(pad, camera);
@@ -162,16 +162,14 @@ impl Simulation {
         if let Some(ghost) = &mut self.ghost {
             ghost.tick(&command, home);
         }
-        self.times = TickTimes {
-            policy: self.actors.iter().map(|a| a.policy_time).sum(),
-            whole: start.elapsed(),
-        };
+        self.times =
+            TickTimes { policy: self.actors.iter().map(|a| a.policy_time).sum(), whole: start.elapsed() };
         for (actor, character) in self.actors.iter_mut().zip(self.crowd.characters()) {
             actor.observe(character, &mut self.totals);
         }
         self.totals.times(self.times);
         for index in 0..self.actors.len() {
-            if self.actors[index].lay_secs >= LIE_SECS || blowups.iter().any(|b| b.character == index) {
+            if self.actors[index].lay_secs >= LIE_SECS {
                 self.stand_up(index);
             }
         }

@@ -1,0 +1,93 @@
+//! Real time to whole ticks: fixed steps off the draw rate.
+
+use crate::sim::TICK_SECS;
+
+/// Most ticks in one frame: below real time the demo slows down rather than stalls.
+const MOST_TICKS: u32 = 64;
+/// Longest frame that counts, seconds: after a longer one (a moved window, a breakpoint) time is dropped.
+const LONGEST_FRAME: f32 = 0.25;
+
+/// Pause, speed and the time that no tick has used yet.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Clock {
+    /// Stands still.
+    pub paused: bool,
+    /// Of real time, 1/32 to 8.
+    pub speed: f32,
+    /// Ticks to run though paused.
+    pub steps: u32,
+    left: f32,
+    /// Simulated over real seconds, smoothed.
+    pub realtime_factor: f32,
+}
+
+impl Default for Clock {
+    fn default() -> Self {
+        Self { paused: false, speed: 1.0, steps: 0, left: 0.0, realtime_factor: 0.0 }
+    }
+}
+
+impl Clock {
+    /// Speeds that panels offer.
+    pub const SPEEDS: [f32; 9] = [1.0 / 32.0, 1.0 / 16.0, 0.125, 0.25, 0.5, 1.0, 2.0, 4.0, 8.0];
+
+    /// Ticks to run now that `dt` seconds have passed.
+    pub fn ticks_due(&mut self, dt: f32) -> u32 {
+        let dt = if dt.is_finite() { dt.clamp(0.0, LONGEST_FRAME) } else { 0.0 };
+        let ticks = if self.paused {
+            self.left = 0.0;
+            std::mem::take(&mut self.steps).min(MOST_TICKS)
+        } else {
+            self.left += dt * self.speed;
+            let ticks = ((self.left / TICK_SECS) as u32).min(MOST_TICKS);
+            self.left = (self.left - ticks as f32 * TICK_SECS).min(TICK_SECS);
+            ticks
+        };
+        if dt > 0.0 {
+            let now = ticks as f32 * TICK_SECS / dt;
+            self.realtime_factor += (now - self.realtime_factor) * (dt * 2.0).min(1.0);
+        }
+        ticks
+    }
+
+    /// Puts the picture so far into the tick, for pictures at times of their own.
+    pub fn set_alpha(&mut self, alpha: f32) {
+        self.left = alpha.clamp(0.0, 1.0) * TICK_SECS;
+    }
+
+    /// Share of a tick that has passed since the last one.
+    #[must_use]
+    pub fn alpha(&self) -> f32 {
+        (self.left / TICK_SECS).clamp(0.0, 1.0)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn ticks_keep_to_the_time_at_any_frame_rate() {
+        for fps in [7.0, 30.0, 59.94, 144.0, 1000.0] {
+            let mut clock = Clock::default();
+            let frames = (4.0 * fps) as usize;
+            let ticks: u32 = (0..frames).map(|_| clock.ticks_due(1.0 / fps)).sum();
+            let due = frames as f32 / fps / TICK_SECS;
+            assert!((ticks as f32 - due).abs() <= 1.5, "{fps} fps: {ticks} ticks, {due} due");
+        }
+    }
+
+    #[test]
+    fn a_paused_clock_steps_only_when_asked() {
+        let mut clock = Clock { paused: true, ..Clock::default() };
+        assert_eq!(clock.ticks_due(1.0), 0);
+        clock.steps = 1;
+        assert_eq!((clock.ticks_due(0.01), clock.ticks_due(0.01)), (1, 0));
+    }
+
+    #[test]
+    fn a_stall_does_not_make_an_avalanche() {
+        let mut clock = Clock { speed: 8.0, ..Clock::default() };
+        assert!(clock.ticks_due(1e6) <= MOST_TICKS && clock.ticks_due(f32::NAN) <= 1);
+    }
+}

@@ -1,0 +1,89 @@
+//! Everything a panel, key or mouse can ask for.
+
+use glam::Vec2;
+use physics_bridge::Settings;
+use policy_core::{BlendMode, Goal};
+
+use super::{Grab, Layers, PanelKind, Preset};
+use crate::camera::CameraMode;
+use crate::sim::Ground;
+use crate::stage::Shown;
+
+/// What to record.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Record {
+    /// One picture.
+    Screenshot,
+    /// One picture after another.
+    Sequence,
+    /// A film: MP4 with ffmpeg, else APNG.
+    Video,
+    /// No more.
+    Stop,
+}
+
+/// A wish of the user, as data.
+#[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
+pub enum ViewerCommand {
+    /// Go somewhere on the graph whatever the triggers say; `None` gives them back.
+    Goal(Option<Goal>),
+    /// Blend per layer.
+    Layers(Layers),
+    /// Remember the sliders under a name.
+    SavePreset(Preset),
+    /// Forget a preset.
+    DeletePreset(usize),
+    /// How blends become actions.
+    Mode(BlendMode),
+    /// A second character under another mode; `None` ends it.
+    Ghost(Option<BlendMode>),
+    /// Start a skill.
+    Skill(usize),
+    /// Stand still or go on.
+    Pause(bool),
+    /// One tick.
+    Step,
+    /// So many ticks before the newest state that is kept.
+    Scrub(usize),
+    /// One tick back.
+    StepBack,
+    /// Of real time.
+    Speed(f32),
+    /// Everybody back to the start.
+    Reset,
+    /// Gravity, friction, strength.
+    Settings(Settings),
+    /// Another ground.
+    Ground(Ground),
+    /// So many characters.
+    Characters(usize),
+    /// Pull a body, or let go.
+    Grab(Option<Grab>),
+    /// How the camera moves.
+    Camera(CameraMode),
+    /// Turn the camera, radians.
+    Turn(Vec2),
+    /// Camera closer (below 1) or away.
+    Zoom(f32),
+    /// What is shown besides the characters.
+    Shown(Shown),
+    /// Open or close a panel.
+    TogglePanel(PanelKind),
+    /// Move a panel to the other side.
+    SwapSide(PanelKind),
+    /// Hide or show all panels.
+    HidePanels(bool),
+    /// Help overlay.
+    Help(bool),
+    /// Screenshot, sequence, film.
+    Record(Record),
+    /// Go on after a failure, from some ticks before it.
+    RewindAfterFailure,
+    /// Go on after a failure, from the start.
+    ResetAfterFailure,
+    /// A message was read.
+    DismissNotice,
+    /// Leave.
+    Quit,
+}

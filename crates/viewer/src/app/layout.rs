@@ -1,0 +1,259 @@
+//! What is remembered from run to run: panels, toggles, presets. A file of RON with a version.
+
+use std::path::{Path, PathBuf};
+
+use serde::{Deserialize, Serialize};
+
+use super::Preset;
+use crate::camera::CameraMode;
+use crate::stage::Shown;
+
+/// Version of the file.
+pub const LAYOUT_VERSION: u32 = 1;
+/// Largest file that is read, bytes.
+const MOST_BYTES: u64 = 1 << 20;
+
+/// A panel.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
+#[expect(missing_docs, reason = "the names say it all")]
+pub enum PanelKind {
+    Paths,
+    Graph,
+    Layers,
+    BlendMode,
+    Skills,
+    Pad,
+    Analysis,
+    Physics,
+    View,
+    Profiler,
+    Record,
+}
+
+impl PanelKind {
+    /// All panels, in the order of the bar.
+    pub const ALL: [PanelKind; 11] = [
+        PanelKind::Paths,
+        PanelKind::Graph,
+        PanelKind::Layers,
+        PanelKind::BlendMode,
+        PanelKind::Skills,
+        PanelKind::Pad,
+        PanelKind::Analysis,
+        PanelKind::Physics,
+        PanelKind::View,
+        PanelKind::Profiler,
+        PanelKind::Record,
+    ];
+
+    /// Title.
+    #[must_use]
+    pub const fn title(self) -> &'static str {
+        match self {
+            PanelKind::Paths => "Paths",
+            PanelKind::Graph => "Graph",
+            PanelKind::Layers => "Layers",
+            PanelKind::BlendMode => "Blend mode",
+            PanelKind::Skills => "Skills",
+            PanelKind::Pad => "Pad",
+            PanelKind::Analysis => "Analysis",
+            PanelKind::Physics => "Physics",
+            PanelKind::View => "View",
+            PanelKind::Profiler => "Profiler",
+            PanelKind::Record => "Record",
+        }
+    }
+}
+
+/// Where a panel is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[expect(missing_docs, reason = "the names say it all")]
+pub enum Side {
+    Left,
+    Right,
+}
+
+/// What is remembered.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Layout {
+    /// [`LAYOUT_VERSION`].
+    pub version: u32,
+    /// Open panels from top to bottom, each with its side.
+    pub open: Vec<(PanelKind, Side)>,
+    /// All panels hidden.
+    pub hidden: bool,
+    /// What is shown besides the characters.
+    pub shown: Shown,
+    /// How the camera moves.
+    pub camera: CameraMode,
+    /// Blends per layer.
+    pub presets: Vec<Preset>,
+}
+
+impl Default for Layout {
+    fn default() -> Self {
+        Self {
+            version: LAYOUT_VERSION,
+            open: vec![
+                (PanelKind::Paths, Side::Left),
+                (PanelKind::Graph, Side::Left),
+                (PanelKind::Skills, Side::Left),
+                (PanelKind::Physics, Side::Right),
+                (PanelKind::Profiler, Side::Right),
+            ],
+            hidden: false,
+            shown: Shown::default(),
+            camera: CameraMode::default(),
+            presets: Vec::new(),
+        }
+    }
+}
+
+/// Why a layout can't be read or written. The demo then goes on with the default.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum LayoutError {
+    /// The file can't be read or written.
+    #[error("layout {}: {source}", path.display())]
+    File {
+        /// The file.
+        path: PathBuf,
+        /// Why.
+        source: std::io::Error,
+    },
+    /// The text is no layout.
+    #[error("layout {}: {message}", path.display())]
+    Text {
+        /// The file.
+        path: PathBuf,
+        /// Where and what.
+        message: String,
+    },
+    /// A layout of another version of the demo.
+    #[error("layout {}: expected version {LAYOUT_VERSION}, found {found}", path.display())]
+    Version {
+        /// The file.
+        path: PathBuf,
+        /// Its version.
+        found: u32,
+    },
+}
+
+/// The version alone, whatever else there is.
+#[derive(Deserialize)]
+struct Versioned {
+    version: u32,
+}
+
+impl Layout {
+    /// Where the user's layout is kept; `None` when the system names no such place.
+    #[must_use]
+    pub fn home() -> Option<PathBuf> {
+        let base = std::env::var_os("XDG_CONFIG_HOME")
+            .or_else(|| std::env::var_os("APPDATA"))
+            .map(PathBuf::from)
+            .or_else(|| std::env::var_os("HOME").map(|home| PathBuf::from(home).join(".config")))?;
+        Some(base.join("policy-space").join("layout.ron"))
+    }
+
+    /// Reads a layout; the default when there is no file.
+    ///
+    /// # Errors
+    /// When the file can't be read, is no layout, or is of another version.
+    pub fn load(path: &Path) -> Result<Self, LayoutError> {
+        let file = |source| LayoutError::File { path: path.to_owned(), source };
+        let text = |message| LayoutError::Text { path: path.to_owned(), message };
+        match std::fs::metadata(path) {
+            Err(error) if error.kind() == std::io::ErrorKind::NotFound => return Ok(Self::default()),
+            Err(error) => return Err(file(error)),
+            Ok(meta) if meta.len() > MOST_BYTES => {
+                return Err(text(format!("expected at most {MOST_BYTES} bytes, found {}", meta.len())));
+            }
+            Ok(_) => {}
+        }
+        let content = std::fs::read_to_string(path).map_err(file)?;
+        let versioned: Versioned = ron::from_str(&content).map_err(|e| text(e.to_string()))?;
+        if versioned.version != LAYOUT_VERSION {
+            return Err(LayoutError::Version { path: path.to_owned(), found: versioned.version });
+        }
+        ron::from_str(&content).map_err(|e| text(e.to_string()))
+    }
+
+    /// Writes the layout, with its folder.
+    ///
+    /// # Errors
+    /// When that fails.
+    pub fn save(&self, path: &Path) -> Result<(), LayoutError> {
+        let file = |source| LayoutError::File { path: path.to_owned(), source };
+        if let Some(folder) = path.parent() {
+            std::fs::create_dir_all(folder).map_err(file)?;
+        }
+        let pretty = ron::ser::to_string_pretty(self, ron::ser::PrettyConfig::default());
+        let content =
+            pretty.map_err(|e| LayoutError::Text { path: path.to_owned(), message: e.to_string() })?;
+        std::fs::write(path, content).map_err(file)
+    }
+
+    /// The side of an open panel.
+    #[must_use]
+    pub fn side_of(&self, kind: PanelKind) -> Option<Side> {
+        self.open.iter().find(|(open, _)| *open == kind).map(|(_, side)| *side)
+    }
+
+    /// Opens or closes a panel. It opens on the emptier side.
+    pub fn toggle(&mut self, kind: PanelKind) {
+        if self.side_of(kind).is_some() {
+            self.open.retain(|(open, _)| *open != kind);
+            return;
+        }
+        let left = self.open.iter().filter(|(_, side)| *side == Side::Left).count();
+        let side = if 2 * left > self.open.len() { Side::Right } else { Side::Left };
+        self.open.push((kind, side));
+    }
+
+    /// Moves an open panel to the other side.
+    pub fn swap_side(&mut self, kind: PanelKind) {
+        for (open, side) in &mut self.open {
+            if *open == kind {
+                *side = if *side == Side::Left { Side::Right } else { Side::Left };
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_layout_comes_back_as_it_was_saved() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("a").join("layout.ron");
+        let mut layout = Layout::default();
+        layout.toggle(PanelKind::Analysis);
+        layout.swap_side(PanelKind::Paths);
+        layout.presets.push(Preset {
+            name: "x".into(),
+            from: "a".into(),
+            to: "b".into(),
+            t: [0.0, 0.5, 1.0],
+        });
+        layout.save(&path).unwrap();
+        assert_eq!(Layout::load(&path).unwrap(), layout);
+    }
+
+    #[test]
+    fn another_version_and_nonsense_are_refused_by_name() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("layout.ron");
+        assert_eq!(Layout::load(&path).unwrap(), Layout::default());
+        std::fs::write(&path, "(version: 99, docks: [])").unwrap();
+        let error = Layout::load(&path).unwrap_err().to_string();
+        assert!(error.contains("layout.ron") && error.contains("expected version 1, found 99"), "{error}");
+        std::fs::write(&path, "(version: 1, oben: 3)").unwrap();
+        assert!(matches!(Layout::load(&path), Err(LayoutError::Text { .. })));
+        std::fs::write(&path, [0xff, 0xfe, 0]).unwrap();
+        assert!(matches!(Layout::load(&path), Err(LayoutError::File { .. })));
+    }
+}

@@ -1,0 +1,228 @@
+//! The demo's state between screen and world: clock, camera, pad, panels. No window and no device in here, so
+//! that tests and pictures run the very same thing.
+//!
+//! Panels read an [`App`] and push [`ViewerCommand`]s; [`App::apply`] alone acts on them.
+
+mod apply;
+mod clock;
+mod command;
+mod keys;
+mod layers;
+mod layout;
+mod pick;
+mod plots;
+
+use std::sync::mpsc::Receiver;
+
+use egui::Ui;
+use policy_core::{Body, GamepadState};
+
+use crate::analysis::Analysis;
+use crate::camera::Camera;
+use crate::panels;
+use crate::render::Scene;
+use crate::sim::{Blowup, Simulation, TICK_SECS};
+use crate::stage::{Trail, set_scene};
+pub use clock::Clock;
+pub use command::{Record, ViewerCommand};
+pub use keys::{KEYS, Keys, PAD};
+pub use layers::{Layers, Preset};
+pub use layout::{LAYOUT_VERSION, Layout, LayoutError, PanelKind, Side};
+pub use pick::Grab;
+pub use plots::{Plots, Series};
+
+/// What is known of pads, filled in by whoever reads them.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct PadView {
+    /// Name of the active pad and its back end.
+    pub name: Option<String>,
+    /// As reported.
+    pub raw: GamepadState,
+    /// After dead zones; neutral without a pad.
+    pub state: GamepadState,
+    /// What could not be read or understood, and what to do.
+    pub problems: Vec<String>,
+}
+
+/// Something went wrong; the demo waits.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Failure {
+    /// What happened.
+    pub what: String,
+    /// Where the state before it was written.
+    pub dump: Option<String>,
+}
+
+/// The demo.
+#[derive(Debug)]
+pub struct App {
+    /// Characters and ground.
+    pub sim: Simulation,
+    /// Pause and speed.
+    pub clock: Clock,
+    /// The eye.
+    pub camera: Camera,
+    /// The way walked.
+    pub trail: Trail,
+    /// Open panels, toggles, presets: what is remembered.
+    pub layout: Layout,
+    /// Sliders of the layers.
+    pub layers: Layers,
+    /// Pads.
+    pub pad: PadView,
+    /// Keyboard as a pad.
+    pub keys: Keys,
+    /// Curves of the profiler and the gauges.
+    pub plots: Plots,
+    /// Principal components, once they are there.
+    pub analysis: Option<Analysis>,
+    /// What stops the demo.
+    pub failure: Option<Failure>,
+    /// The last message to the user.
+    pub notice: Option<String>,
+    /// The body under the mouse that is being pulled.
+    pub grab: Option<Grab>,
+    /// True while the help overlay is open.
+    pub help: bool,
+    /// What the recorder is to do at the next frame; whoever draws takes it.
+    pub record: Option<Record>,
+    /// What is being recorded.
+    pub recording: Option<String>,
+    /// Name of the adapter, for the profiler.
+    pub adapter: String,
+    /// True when it is time to leave.
+    pub quit: bool,
+    /// The ground has changed: whoever draws uploads it and clears this.
+    pub ground_changed: bool,
+    /// A file that was dropped on the window; whoever draws loads it.
+    pub dropped: Option<std::path::PathBuf>,
+    analysis_soon: Option<Receiver<Analysis>>,
+}
+
+impl App {
+    /// The demo of a world.
+    #[must_use]
+    pub fn new(sim: Simulation, layout: Layout) -> Self {
+        let mut camera = Camera::default();
+        camera.mode = layout.camera;
+        let player = sim.player();
+        camera.settle(player.state.body(Body::Pelvis).position, player.state.ground_height);
+        Self {
+            layers: Layers::new(sim.pack()),
+            sim,
+            clock: Clock::default(),
+            camera,
+            trail: Trail::default(),
+            layout,
+            pad: PadView::default(),
+            keys: Keys::default(),
+            plots: Plots::default(),
+            analysis: None,
+            failure: None,
+            notice: None,
+            grab: None,
+            help: false,
+            record: None,
+            recording: None,
+            adapter: String::new(),
+            quit: false,
+            ground_changed: true,
+            dropped: None,
+            analysis_soon: None,
+        }
+    }
+
+    /// Starts to work out the principal components on a thread of its own.
+    pub fn start_analysis(&mut self) {
+        self.analysis_soon = Some(Analysis::start(self.sim.pack().clone()));
+    }
+
+    /// What steers: the pad, or the keyboard when the pad is at rest.
+    #[must_use]
+    pub fn input(&self) -> GamepadState {
+        if self.pad.state == GamepadState::default() { self.keys.state() } else { self.pad.state }
+    }
+
+    /// Lets `dt` seconds of the clock on the wall pass: physics in whole ticks, camera, gauges.
+    pub fn advance(&mut self, dt: f32) {
+        self.keys.advance(dt);
+        if let Some(analysis) = self.analysis_soon.as_ref().and_then(|soon| soon.try_recv().ok()) {
+            (self.analysis, self.analysis_soon) = (Some(analysis), None);
+        }
+        if self.failure.is_none() {
+            for _ in 0..self.clock.ticks_due(dt) {
+                if let Some(blowup) = self.tick().first() {
+                    self.fail(blowup);
+                    break;
+                }
+            }
+        }
+        self.follow(dt.min(0.1), self.alpha());
+    }
+
+    /// The camera takes `dt` seconds to follow the player, who is `alpha` of the way into the last tick.
+    pub fn follow(&mut self, dt: f32, alpha: f32) {
+        let input = self.input();
+        let player = self.sim.player();
+        let pelvis = player.poses(alpha).positions[0];
+        let (heading, ground) = (player.heading(), player.state.ground_height);
+        self.camera.advance(dt, input.right_stick, pelvis, heading, ground);
+    }
+
+    /// One tick of the world. Characters that blew up are in their state before it.
+    pub fn tick(&mut self) -> Vec<Blowup> {
+        self.pull();
+        let input = self.input();
+        self.sim.overrides.blend = self.layers.blend();
+        let blowups = self.sim.tick(&input, self.camera.heading());
+        self.trail.follow(&self.sim);
+        self.plots.tick(&self.sim);
+        if let Some(analysis) = &mut self.analysis {
+            analysis.follow(self.sim.player());
+        }
+        blowups
+    }
+
+    /// Between the last tick but one and the last, where the picture is.
+    #[must_use]
+    pub fn alpha(&self) -> f32 {
+        if self.clock.paused || self.failure.is_some() { 1.0 } else { self.clock.alpha() }
+    }
+
+    /// Sets the scene for the next picture.
+    pub fn set_scene(&self, scene: &mut Scene, around: f32) {
+        let how = (self.alpha(), &self.layout.shown, &self.trail);
+        set_scene(scene, &self.sim, &self.camera, around, how);
+        if let Some(grab) = &self.grab {
+            let from = self.sim.player().poses(self.alpha()).positions[grab.body.index()];
+            scene.arrow(from, from + grab.pull, 0.012, [0.95, 0.3, 0.1, 1.0]);
+        }
+    }
+
+    /// All panels, keys and the mouse: one frame of the user's doing. `around` as in [`App::set_scene`].
+    pub fn ui(&mut self, ui: &mut Ui, around: f32) {
+        let mut commands = Vec::new();
+        keys::read(ui, self, &mut commands);
+        let free = panels::show(ui, self, &mut commands);
+        pick::read(ui, self, free, around, &mut commands);
+        for command in commands {
+            self.apply(command);
+        }
+    }
+
+    fn fail(&mut self, blowup: &Blowup) {
+        let path = std::env::temp_dir().join("policy-space-diverged.json");
+        let dump = blowup.dump.save(&path).is_ok().then(|| path.display().to_string());
+        self.failure =
+            Some(Failure { what: format!("character {}: {}", blowup.character, blowup.what), dump });
+    }
+
+    /// Pulls the body that the mouse holds.
+    fn pull(&mut self) {
+        if let Some(grab) = &self.grab {
+            let (body, force) = (grab.body, grab.force());
+            // A force that is out of range is not worth stopping for: the next frame brings another.
+            let _ = self.sim.character_mut(0).push(body, force, TICK_SECS);
+        }
+    }
+}

@@ -1,0 +1,57 @@
+//! Makes the demo of a command line: world, layout, mesh.
+
+use std::path::PathBuf;
+
+use super::{Demo, load};
+use crate::app::{App, Layout};
+use crate::assets;
+use crate::mesh::SkinnedMesh;
+use crate::sim::{SimConfig, Simulation};
+
+/// What a window needs.
+#[derive(Debug)]
+pub struct Opened {
+    /// The demo.
+    pub app: App,
+    /// The humanoid.
+    pub mesh: SkinnedMesh,
+    /// Where its layout is kept, when it is.
+    pub layout: Option<PathBuf>,
+}
+
+/// Makes the demo. A mesh or layout that is no good is said in [`App::notice`], and the default taken.
+///
+/// # Errors
+/// When the pack is no good, or the world can't be made.
+pub fn open(demo: &Demo) -> anyhow::Result<Opened> {
+    let mut notices = Vec::new();
+    let home = if demo.no_layout || demo.headless { None } else { Layout::home() };
+    let layout = match home.as_deref().map(Layout::load) {
+        Some(Ok(layout)) => layout,
+        Some(Err(error)) => {
+            notices.push(error.to_string());
+            Layout::default()
+        }
+        None => Layout::default(),
+    };
+    let (mesh, complaint) = load::mesh(demo.mesh.as_deref())?;
+    notices.extend(complaint);
+    let pack = load::pack(demo.pack.as_deref())?;
+    let config = SimConfig {
+        ground: demo.terrain,
+        characters: demo.characters,
+        seed: demo.seed,
+        history: !demo.headless,
+    };
+    let mut sim = Simulation::new(assets::HUMANOID_MJCF, pack, config)?;
+    sim.overrides.mode = demo.mode;
+    if let Some(mode) = demo.ghost {
+        sim.start_ghost(mode);
+    }
+    let mut app = App::new(sim, layout);
+    if let Some(distance) = demo.distance {
+        app.camera.distance = distance;
+    }
+    app.notice = (!notices.is_empty()).then(|| notices.join("\n"));
+    Ok(Opened { app, mesh, layout: home })
+}

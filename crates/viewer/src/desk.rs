@@ -1,0 +1,204 @@
+//! Puts a frame together: panels, picture, overlay, recording. The same for a window and off screen.
+
+use std::path::PathBuf;
+use std::time::{Instant, SystemTime};
+
+use image::RgbaImage;
+
+use crate::app::{App, Record};
+use crate::gpu::{Gpu, GpuError};
+use crate::mesh::SkinnedMesh;
+use crate::overlay::{Overlay, Prepared};
+use crate::recorder::{self, Kind, Recorder};
+use crate::render::{OffScreen, RenderConfig, Renderer, Scene};
+use crate::stage::ground_grid;
+
+/// Folder of recordings, in the present one.
+const FOLDER: &str = "policy-space-recordings";
+/// Pictures a second that films say they have.
+const FILM_FPS: u32 = 30;
+
+/// Renderer, overlay and recorder around an [`App`].
+pub struct Desk {
+    gpu: Gpu,
+    format: wgpu::TextureFormat,
+    renderer: Renderer,
+    overlay: Overlay,
+    context: egui::Context,
+    scene: Scene,
+    around: f32,
+    recorder: Option<(Recorder, Instant, usize)>,
+}
+
+impl std::fmt::Debug for Desk {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_struct("Desk").field("format", &self.format).finish_non_exhaustive()
+    }
+}
+
+impl Desk {
+    /// For views of `format`.
+    #[must_use]
+    pub fn new(gpu: &Gpu, format: wgpu::TextureFormat, mesh: SkinnedMesh) -> Self {
+        let context = egui::Context::default();
+        context.set_visuals(egui::Visuals::dark());
+        Self {
+            gpu: gpu.clone(),
+            format,
+            renderer: Renderer::new(gpu, format, RenderConfig::for_adapter(gpu.is_software), mesh),
+            overlay: Overlay::new(gpu, format),
+            context,
+            scene: Scene::default(),
+            around: 0.0,
+            recorder: None,
+        }
+    }
+
+    /// Of the panels.
+    #[must_use]
+    pub fn context(&self) -> &egui::Context {
+        &self.context
+    }
+
+    /// Runs the panels over `input`; `around` turns the picture away from where the pad steers, radians.
+    pub fn panels(&mut self, app: &mut App, input: egui::RawInput, around: f32) -> egui::FullOutput {
+        self.around = around;
+        let start = Instant::now();
+        let output = self.context.run_ui(input, |ui| app.ui(ui, around));
+        app.plots.ui.push(start.elapsed().as_secs_f32() * 1e3);
+        if let Some(path) = app.dropped.take() {
+            match SkinnedMesh::load(&path) {
+                Ok(mesh) => self.renderer.set_mesh(mesh),
+                Err(error) => app.notice = Some(error.to_string()),
+            }
+        }
+        output
+    }
+
+    /// Takes up what a frame that is not drawn has changed.
+    pub fn skip(&mut self, output: egui::FullOutput) {
+        let prepared = Prepared::new(&self.context, output);
+        self.overlay.upload(&prepared);
+        self.overlay.free(&prepared);
+    }
+
+    /// Draws picture and panels into `view` and sends it off; records when that is asked for.
+    pub fn draw(
+        &mut self,
+        app: &mut App,
+        output: egui::FullOutput,
+        view: &wgpu::TextureView,
+        size: [u32; 2],
+    ) {
+        let prepared = self.prepare(app, output);
+        let mut encoder = self.gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
+        self.renderer.draw(&mut encoder, view, size, &self.scene);
+        self.overlay.draw(&mut encoder, view, size, &prepared);
+        self.gpu.queue.submit([encoder.finish()]);
+        self.record(app, size, &prepared);
+        self.overlay.free(&prepared);
+    }
+
+    /// Draws picture and, with `panels`, their overlay off screen and reads it back.
+    ///
+    /// # Errors
+    /// When the device is lost.
+    pub fn picture(
+        &mut self,
+        app: &mut App,
+        output: egui::FullOutput,
+        size: [u32; 2],
+        panels: bool,
+    ) -> Result<RgbaImage, GpuError> {
+        let prepared = self.prepare(app, output);
+        let picture = self.capture(size, panels.then_some(&prepared));
+        self.overlay.free(&prepared);
+        picture
+    }
+
+    fn prepare(&mut self, app: &mut App, output: egui::FullOutput) -> Prepared {
+        if app.ground_changed {
+            let model = app.sim.model();
+            let grid = ground_grid(model.height_field(), model.height_at(1e4, 1e4));
+            self.renderer.set_ground(grid.as_ref());
+            app.ground_changed = false;
+        }
+        app.set_scene(&mut self.scene, self.around);
+        let prepared = Prepared::new(&self.context, output);
+        self.overlay.upload(&prepared);
+        prepared
+    }
+
+    fn capture(&mut self, size: [u32; 2], prepared: Option<&Prepared>) -> Result<RgbaImage, GpuError> {
+        let target = OffScreen::with_format(&self.gpu, size, self.format);
+        let mut encoder = self.gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
+        self.renderer.draw(&mut encoder, target.view(), size, &self.scene);
+        if let Some(prepared) = prepared {
+            self.overlay.draw(&mut encoder, target.view(), size, prepared);
+        }
+        target.finish(&self.gpu, encoder)
+    }
+
+    /// Starts, feeds or ends what the user asked to be recorded.
+    fn record(&mut self, app: &mut App, size: [u32; 2], prepared: &Prepared) {
+        match app.record.take() {
+            Some(Record::Screenshot) => {
+                let path = name("png");
+                let saved = self.capture(size, Some(prepared)).map_err(|e| e.to_string());
+                let saved = saved.and_then(|p| recorder::save(&p, &path).map_err(|e| e.to_string()));
+                app.notice = Some(saved.map_or_else(|e| e, |()| format!("wrote {}", path.display())));
+            }
+            Some(Record::Sequence) => self.start(app, Kind::Sequence, size),
+            Some(Record::Video) => self.start(app, Kind::film(), size),
+            Some(Record::Stop) => self.stop(app),
+            None => {}
+        }
+        let Some((_, start, taken)) = &self.recorder else { return };
+        let due = (start.elapsed().as_secs_f32() * FILM_FPS as f32) as usize;
+        if due < *taken {
+            return;
+        }
+        let picture = self.capture(size, Some(prepared));
+        let Some((recorder, _, taken)) = &mut self.recorder else { return };
+        *taken = due + 1;
+        if !picture.is_ok_and(|p| recorder.take(p)) {
+            self.stop(app);
+        }
+    }
+
+    fn start(&mut self, app: &mut App, kind: Kind, size: [u32; 2]) {
+        self.stop(app);
+        let path = match kind {
+            Kind::Sequence => name("frames"),
+            Kind::Mp4 => name("mp4"),
+            Kind::Apng => name("png"),
+        };
+        app.recording = Some(path.display().to_string());
+        self.recorder = Some((Recorder::start(kind, path, size, FILM_FPS), Instant::now(), 0));
+    }
+
+    fn stop(&mut self, app: &mut App) {
+        app.recording = None;
+        if let Some((recorder, ..)) = self.recorder.take() {
+            let path = recorder.path().display().to_string();
+            app.notice = Some(match recorder.finish() {
+                Ok(0) => format!("wrote {path}"),
+                Ok(dropped) => format!("wrote {path}; {dropped} pictures came too fast and were left out"),
+                Err(error) => error.to_string(),
+            });
+        }
+    }
+
+    /// Ends a recording that still runs.
+    pub fn finish(mut self) {
+        if let Some((recorder, ..)) = self.recorder.take() {
+            // The window is gone: there is nobody left to tell.
+            let _ = recorder.finish();
+        }
+    }
+}
+
+fn name(extension: &str) -> PathBuf {
+    let since = SystemTime::now().duration_since(SystemTime::UNIX_EPOCH).unwrap_or_default();
+    PathBuf::from(FOLDER).join(format!("policy-space-{}.{extension}", since.as_millis()))
+}

@@ -1,0 +1,49 @@
+//! How blends become actions, and the ghost that walks beside under another mode.
+
+use egui::Ui;
+use policy_core::{BlendMode, Evaluation};
+
+use super::WRONG;
+use crate::app::{App, ViewerCommand};
+
+const TEXTS: [&str; 3] = [
+    "the parameters are interpolated: one network in between",
+    "both networks run, their actions are interpolated",
+    "the nearer network runs alone",
+];
+
+pub(super) fn show(ui: &mut Ui, app: &App, commands: &mut Vec<ViewerCommand>) {
+    let present = app.sim.overrides.mode;
+    for (mode, text) in BlendMode::ALL.into_iter().zip(TEXTS) {
+        if ui.radio(mode == present, mode.name()).on_hover_text(text).clicked() {
+            commands.push(ViewerCommand::Mode(mode));
+        }
+    }
+    let took = match app.sim.player().report().evaluation {
+        Evaluation::Single => "one policy",
+        Evaluation::Cached => "a blend that rests: one product",
+        Evaluation::Fused => "a blend that moves: one product for each policy",
+        Evaluation::Actions => "every policy of the blend",
+    };
+    ui.weak(format!("the last tick evaluated {took}"));
+    ui.separator();
+    ui.label("Beside it, from the same state:");
+    ui.horizontal(|ui| {
+        let ghost = app.sim.ghost().map(|g| g.mode());
+        if ui.selectable_label(ghost.is_none(), "nobody").clicked() {
+            commands.push(ViewerCommand::Ghost(None));
+        }
+        for mode in BlendMode::ALL {
+            let label = ui.selectable_label(ghost == Some(mode), format!("ghost: {}", mode.name()));
+            if label.clicked() {
+                commands.push(ViewerCommand::Ghost(Some(mode)));
+            }
+        }
+    });
+    if let Some(ghost) = app.sim.ghost() {
+        ui.label(format!("you {:.2} m/s, ghost {:.2} m/s", app.sim.player().speed(), ghost.speed()));
+        if ghost.is_down() {
+            ui.colored_label(WRONG, "the ghost has fallen");
+        }
+    }
+}

@@ -1,0 +1,24 @@
+//! Something blew up: what, and the two ways on.
+
+use egui::Ui;
+
+use super::WRONG;
+use crate::app::{Failure, ViewerCommand};
+
+pub(super) fn show(ui: &mut Ui, failure: &Failure, commands: &mut Vec<ViewerCommand>) {
+    let window = egui::Window::new("The simulation has stopped").collapsible(false).resizable(false);
+    window.anchor(egui::Align2::CENTER_CENTER, egui::Vec2::ZERO).show(ui.ctx(), |ui| {
+        ui.colored_label(WRONG, &failure.what);
+        if let Some(dump) = &failure.dump {
+            ui.label(format!("The state before it is in {dump}."));
+        }
+        ui.horizontal(|ui| {
+            if ui.button("Rewind and go on").clicked() {
+                commands.push(ViewerCommand::RewindAfterFailure);
+            }
+            if ui.button("Start again").clicked() {
+                commands.push(ViewerCommand::ResetAfterFailure);
+            }
+        });
+    });
+}

@@ -1,0 +1,84 @@
+//! The policy graph on a circle: edges with their distance, the blend as a dot, the active skill lit.
+
+use egui::{Align2, Color32, FontId, Pos2, Rect, Sense, Stroke, Ui, vec2};
+use policy_core::Goal;
+
+use super::{PRESENT, REQUESTED};
+use crate::app::{App, ViewerCommand};
+
+const HEIGHT: f32 = 190.0;
+const NODE: f32 = 9.0;
+
+pub(super) fn show(ui: &mut Ui, app: &App, commands: &mut Vec<ViewerCommand>) {
+    let graph = app.sim.pack().graph();
+    let (rect, response) = ui.allocate_exact_size(vec2(ui.available_width(), HEIGHT), Sense::click());
+    let count = graph.nodes().len();
+    let place = |node: usize| on_circle(rect, node, count);
+    let report = app.sim.player().report();
+    let furthest = graph.edges().iter().map(|e| e.distance).fold(f32::MIN_POSITIVE, f32::max);
+    let painter = ui.painter();
+    let small = FontId::proportional(10.0);
+    for edge in graph.edges() {
+        let [a, b] = edge.nodes.map(place);
+        // The nearer two policies are, the stronger their line.
+        let near = 1.0 - 0.75 * edge.distance / furthest;
+        painter.line_segment([a, b], Stroke::new(1.0 + 4.0 * near, ui.visuals().weak_text_color()));
+        let text = format!("{:.1}", edge.distance);
+        painter.text(a.lerp(b, 0.5), Align2::CENTER_CENTER, text, small.clone(), ui.visuals().text_color());
+    }
+    let running = report.skill.map(|s| app.sim.pack().skills()[s.skill].policy);
+    for (index, node) in graph.nodes().iter().enumerate() {
+        let weight: f32 =
+            report.blend.terms().iter().filter(|t| t.policy == index).map(|t| t.weights[0]).sum();
+        let colour = if running == Some(index) { REQUESTED } else { lit(weight) };
+        let at = place(index);
+        painter.circle(at, NODE, colour, Stroke::new(1.5, ui.visuals().text_color()));
+        let out = (at - rect.center()).normalized() * 18.0;
+        let text = ui.visuals().text_color();
+        painter.text(at + out, Align2::CENTER_CENTER, &node.name, FontId::proportional(12.0), text);
+    }
+    if running.is_none() {
+        let position = report.position;
+        let at = place(position.from).lerp(place(position.to), position.t);
+        painter.circle(at, 5.0, PRESENT, Stroke::new(1.0, Color32::WHITE));
+    }
+    if let (true, Some(pointer)) = (response.clicked(), response.interact_pointer_pos()) {
+        let near = |n: &usize| place(*n).distance(pointer);
+        let nearest = (0..count).min_by(|a, b| near(a).total_cmp(&near(b)));
+        if let Some(node) = nearest.filter(|n| near(n) < 2.0 * NODE) {
+            commands.push(ViewerCommand::Goal(Some(Goal::Node(node))));
+        }
+    }
+    walk_to(ui, app, commands);
+}
+
+/// The same by name, and the way it takes.
+fn walk_to(ui: &mut Ui, app: &App, commands: &mut Vec<ViewerCommand>) {
+    let graph = app.sim.pack().graph();
+    ui.horizontal_wrapped(|ui| {
+        ui.label("Go to");
+        for (index, node) in graph.nodes().iter().enumerate() {
+            if ui.small_button(&node.name).clicked() {
+                commands.push(ViewerCommand::Goal(Some(Goal::Node(index))));
+            }
+        }
+    });
+    let report = app.sim.player().report();
+    let (from, to) = (report.position.nearest_node(), report.goal.nearest_node());
+    let route = graph.routes().route(from, to);
+    if route.len() > 1 {
+        let names: Vec<&str> = route.iter().map(|&n| graph.nodes()[n].name.as_str()).collect();
+        ui.weak(format!("{}, distance {:.1}", names.join(" > "), graph.routes().cost(from, to)));
+    }
+}
+
+fn on_circle(rect: Rect, node: usize, count: usize) -> Pos2 {
+    let angle = std::f32::consts::TAU * node as f32 / count as f32 - std::f32::consts::FRAC_PI_2;
+    let radius = vec2(0.5 * rect.width() - 44.0, 0.5 * rect.height() - 32.0);
+    rect.center() + vec2(angle.cos() * radius.x, angle.sin() * radius.y)
+}
+
+fn lit(weight: f32) -> Color32 {
+    let dark = Color32::from_rgb(48, 54, 62);
+    dark.lerp_to_gamma(PRESENT, weight.clamp(0.0, 1.0))
+}

@@ -1,0 +1,37 @@
+//! The overlay that says what each control does now.
+
+use egui::Ui;
+
+use crate::app::{App, KEYS, PAD, ViewerCommand};
+
+pub(super) fn show(ui: &mut Ui, app: &App, commands: &mut Vec<ViewerCommand>) {
+    let mut open = true;
+    let window = egui::Window::new("Controls").open(&mut open).collapsible(false).resizable(false);
+    window.anchor(egui::Align2::CENTER_CENTER, egui::Vec2::ZERO).show(ui.ctx(), |ui| {
+        table(ui, "Keyboard and mouse", &KEYS);
+        ui.add_space(8.0);
+        table(ui, app.pad.name.as_deref().unwrap_or("Pad (none connected)"), &PAD);
+        ui.add_space(8.0);
+        ui.label(format!("Camera: {}. Blends: {}.", app.camera.mode.name(), app.sim.overrides.mode.name()));
+        let skills: Vec<&str> = app.sim.pack().skills().iter().map(|s| s.name.as_str()).collect();
+        if skills.is_empty() {
+            ui.label("This pack has no episodic skills: their buttons do nothing.");
+        } else {
+            ui.label(format!("Skills of this pack: {}.", skills.join(", ")));
+        }
+    });
+    if !open {
+        commands.push(ViewerCommand::Help(false));
+    }
+}
+
+fn table(ui: &mut Ui, title: &str, rows: &[(&str, &str)]) {
+    ui.strong(title);
+    egui::Grid::new(title).num_columns(2).striped(true).show(ui, |ui| {
+        for (control, action) in rows {
+            ui.monospace(*control);
+            ui.label(*action);
+            ui.end_row();
+        }
+    });
+}

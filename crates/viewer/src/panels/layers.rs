@@ -1,0 +1,84 @@
+//! Blending per layer: one slider for all, or one each; presets.
+
+use egui::{ComboBox, Slider, Ui};
+
+use crate::app::{App, Layers, Preset, ViewerCommand};
+
+const NAMES: [&str; 3] = ["hidden 1", "hidden 2", "output"];
+
+pub(super) fn show(ui: &mut Ui, app: &App, commands: &mut Vec<ViewerCommand>) {
+    let mut layers = app.layers.clone();
+    ui.checkbox(&mut layers.active, "Sliders instead of the triggers");
+    ui.horizontal(|ui| {
+        policy(ui, app, "0 is", &mut layers.from);
+        policy(ui, app, "1 is", &mut layers.to);
+    });
+    ui.horizontal(|ui| {
+        ui.radio_value(&mut layers.automatic, true, "Automatic");
+        ui.radio_value(&mut layers.automatic, false, "Manual");
+        if ui.button("Reset layers").clicked() {
+            layers.t = [0.0; 3];
+        }
+    });
+    if layers.automatic {
+        ui.add(Slider::new(&mut layers.t[0], 0.0..=1.0).text("all layers"));
+    } else {
+        for (t, name) in layers.t.iter_mut().zip(NAMES) {
+            ui.add(Slider::new(t, 0.0..=1.0).text(name));
+        }
+    }
+    presets(ui, app, &mut layers, commands);
+    // Whoever moves a slider wants it to count.
+    layers.active |= layers.t != app.layers.t;
+    if layers != app.layers {
+        commands.push(ViewerCommand::Layers(layers));
+    }
+}
+
+fn policy(ui: &mut Ui, app: &App, label: &str, chosen: &mut usize) {
+    let nodes = app.sim.pack().graph().nodes();
+    ComboBox::new(label, label).width(80.0).selected_text(&nodes[*chosen].name).show_ui(ui, |ui| {
+        for (index, node) in nodes.iter().enumerate() {
+            ui.selectable_value(chosen, index, &node.name);
+        }
+    });
+}
+
+fn presets(ui: &mut Ui, app: &App, layers: &mut Layers, commands: &mut Vec<ViewerCommand>) {
+    let pack = app.sim.pack();
+    ui.horizontal(|ui| {
+        ui.add(egui::TextEdit::singleline(&mut layers.name).desired_width(100.0));
+        if ui.button("Save preset").clicked() && !layers.name.trim().is_empty() {
+            commands.push(ViewerCommand::SavePreset(layers.preset(pack)));
+        }
+        if ui.button("Copy").on_hover_text("The sliders as text, to share").clicked()
+            && let Ok(text) = ron::to_string(&layers.preset(pack))
+        {
+            ui.ctx().copy_text(text);
+        }
+    });
+    // A preset that somebody shared is pasted over the name.
+    if let Some(shared) = shared(&layers.name)
+        && let Some(loaded) = Layers::of_preset(&shared, pack)
+    {
+        *layers = loaded;
+    }
+    for (index, preset) in app.layout.presets.iter().enumerate() {
+        ui.horizontal(|ui| {
+            let loaded = Layers::of_preset(preset, pack);
+            let load = ui.add_enabled(loaded.is_some(), egui::Button::new(&preset.name));
+            let fits = load.on_disabled_hover_text("of policies that this pack lacks");
+            if let (true, Some(loaded)) = (fits.clicked(), loaded) {
+                *layers = loaded;
+            }
+            ui.weak(format!("{} - {}", preset.from, preset.to));
+            if ui.small_button("x").on_hover_text(format!("Delete {}", preset.name)).clicked() {
+                commands.push(ViewerCommand::DeletePreset(index));
+            }
+        });
+    }
+}
+
+fn shared(text: &str) -> Option<Preset> {
+    text.trim_start().starts_with('(').then(|| ron::from_str(text).ok()).flatten()
+}

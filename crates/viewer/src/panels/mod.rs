@@ -1,0 +1,153 @@
+//! The panels. Each reads an [`App`] and pushes [`ViewerCommand`]s; none changes anything by itself.
+
+mod analysis;
+mod blend_mode;
+mod failure;
+mod graph;
+mod help;
+mod layers;
+mod pad;
+mod paths;
+mod physics;
+mod profiler;
+mod record;
+mod skills;
+mod view;
+
+use egui::{Color32, Frame, Margin, Rect, Ui};
+
+use crate::app::{App, PanelKind, Side, ViewerCommand};
+
+/// Colour of what is asked for.
+pub(crate) const REQUESTED: Color32 = Color32::from_rgb(0xe8, 0x8a, 0x3c);
+/// Colour of what is so.
+pub(crate) const PRESENT: Color32 = Color32::from_rgb(0x5f, 0xb7, 0xd6);
+/// Colour of what is wrong.
+pub(crate) const WRONG: Color32 = Color32::from_rgb(0xe0, 0x5a, 0x4e);
+
+/// Width of the sides, points.
+const SIDE_WIDTH: f32 = 290.0;
+
+/// Draws everything; answers the part of the window that no panel covers.
+pub(crate) fn show(ui: &mut Ui, app: &App, commands: &mut Vec<ViewerCommand>) -> Rect {
+    if !app.layout.hidden {
+        bar(ui, app, commands);
+        side(ui, app, Side::Left, commands);
+        side(ui, app, Side::Right, commands);
+    }
+    let free = ui.available_rect_before_wrap();
+    status(ui, app, free, commands);
+    if app.help {
+        help::show(ui, app, commands);
+    }
+    if let Some(failure) = &app.failure {
+        failure::show(ui, failure, commands);
+    }
+    free
+}
+
+fn frame() -> Frame {
+    Frame::new().fill(Color32::from_rgba_unmultiplied(22, 25, 30, 225)).inner_margin(Margin::same(8))
+}
+
+/// The bar on top: one switch for each panel.
+fn bar(ui: &mut Ui, app: &App, commands: &mut Vec<ViewerCommand>) {
+    egui::Panel::top("bar").frame(frame()).show(ui, |ui| {
+        ui.horizontal_wrapped(|ui| {
+            for kind in PanelKind::ALL {
+                let open = app.layout.side_of(kind).is_some();
+                if ui.selectable_label(open, kind.title()).clicked() {
+                    commands.push(ViewerCommand::TogglePanel(kind));
+                }
+            }
+            ui.separator();
+            if ui.button("Help (F1)").clicked() {
+                commands.push(ViewerCommand::Help(!app.help));
+            }
+        });
+    });
+}
+
+/// The panels of one side, from top to bottom.
+fn side(ui: &mut Ui, app: &App, side: Side, commands: &mut Vec<ViewerCommand>) {
+    let open = || app.layout.open.iter().filter(|(_, s)| *s == side);
+    if open().next().is_none() {
+        return;
+    }
+    let panel = match side {
+        Side::Left => egui::Panel::left("left"),
+        Side::Right => egui::Panel::right("right"),
+    };
+    panel.default_size(SIDE_WIDTH).frame(frame()).show(ui, |ui| {
+        egui::ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
+            for (kind, _) in open() {
+                titled(ui, app, *kind, commands);
+            }
+        });
+    });
+}
+
+fn titled(ui: &mut Ui, app: &App, kind: PanelKind, commands: &mut Vec<ViewerCommand>) {
+    ui.horizontal(|ui| {
+        ui.heading(kind.title());
+        ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
+            let title = kind.title();
+            if ui.small_button("x").on_hover_text(format!("Close {title}")).clicked() {
+                commands.push(ViewerCommand::TogglePanel(kind));
+            }
+            if ui.small_button("<>").on_hover_text(format!("Move {title} to the other side")).clicked() {
+                commands.push(ViewerCommand::SwapSide(kind));
+            }
+        });
+    });
+    ui.push_id(kind.title(), |ui| match kind {
+        PanelKind::Paths => paths::show(ui, app, commands),
+        PanelKind::Graph => graph::show(ui, app, commands),
+        PanelKind::Layers => layers::show(ui, app, commands),
+        PanelKind::BlendMode => blend_mode::show(ui, app, commands),
+        PanelKind::Skills => skills::show(ui, app, commands),
+        PanelKind::Pad => pad::show(ui, app),
+        PanelKind::Analysis => analysis::show(ui, app),
+        PanelKind::Physics => physics::show(ui, app, commands),
+        PanelKind::View => view::show(ui, app, commands),
+        PanelKind::Profiler => profiler::show(ui, app),
+        PanelKind::Record => record::show(ui, app, commands),
+    });
+    ui.add_space(6.0);
+    ui.separator();
+}
+
+/// One line at the foot of the picture: what the character does, and messages.
+fn status(ui: &mut Ui, app: &App, free: Rect, commands: &mut Vec<ViewerCommand>) {
+    let nodes = app.sim.pack().graph().nodes();
+    let player = app.sim.player();
+    let position = player.report().position;
+    let place = match position.as_node() {
+        Some(node) => nodes[node].name.clone(),
+        None => {
+            format!("{} - {} {:.0} %", nodes[position.from].name, nodes[position.to].name, 100.0 * position.t)
+        }
+    };
+    let skill = player.report().skill.map(|s| app.sim.pack().skills()[s.skill].name.as_str());
+    let state = if app.clock.paused { "  paused" } else { "" };
+    let text = format!("{}   {:.2} m/s{state}", skill.unwrap_or(&place), player.speed());
+    let at = free.left_bottom() + egui::vec2(14.0, -12.0);
+    let painter = ui.painter();
+    let font = egui::FontId::proportional(15.0);
+    let shade = Color32::from_black_alpha(140);
+    painter.text(at + egui::vec2(1.0, 1.0), egui::Align2::LEFT_BOTTOM, &text, font.clone(), shade);
+    painter.text(at, egui::Align2::LEFT_BOTTOM, &text, font, Color32::WHITE);
+    if let Some(notice) = &app.notice {
+        let area =
+            egui::Area::new(egui::Id::unique("notice")).fixed_pos(free.left_top() + egui::vec2(12.0, 12.0));
+        area.show(ui.ctx(), |ui| {
+            frame().show(ui, |ui| {
+                ui.set_max_width(460.0);
+                ui.colored_label(REQUESTED, notice);
+                if ui.button("Dismiss").clicked() {
+                    commands.push(ViewerCommand::DismissNotice);
+                }
+            });
+        });
+    }
+}

@@ -1,0 +1,73 @@
+//! Time and matter: pause, steps, the last ten seconds, speed, gravity, friction, strength, ground, crowd.
+
+use egui::{Slider, Ui};
+
+use crate::app::{App, Clock, ViewerCommand};
+use crate::sim::{Ground, MAX_CHARACTERS, TICK_SECS};
+
+pub(super) fn show(ui: &mut Ui, app: &App, commands: &mut Vec<ViewerCommand>) {
+    time(ui, app, commands);
+    matter(ui, app, commands);
+    ui.horizontal(|ui| {
+        ui.label("Ground");
+        for ground in Ground::ALL {
+            if ui.selectable_label(app.sim.config().ground == ground, ground.name()).clicked() {
+                commands.push(ViewerCommand::Ground(ground));
+            }
+        }
+    });
+    let mut characters = app.sim.config().characters;
+    let slider = Slider::new(&mut characters, 1..=MAX_CHARACTERS).logarithmic(true).text("characters");
+    // A crowd is made anew for every number, so only where the drag ends.
+    let response = ui.add(slider.update_while_editing(false));
+    if response.changed() {
+        commands.push(ViewerCommand::Characters(characters));
+    }
+    ui.weak("Pull a body with the left mouse button.");
+}
+
+fn time(ui: &mut Ui, app: &App, commands: &mut Vec<ViewerCommand>) {
+    ui.horizontal(|ui| {
+        let (label, pause) = if app.clock.paused { ("Go on", false) } else { ("Pause", true) };
+        if ui.button(label).clicked() {
+            commands.push(ViewerCommand::Pause(pause));
+        }
+        if ui.button("Step back").clicked() {
+            commands.push(ViewerCommand::StepBack);
+        }
+        if ui.button("Step").clicked() {
+            commands.push(ViewerCommand::Step);
+        }
+        if ui.button("Reset").clicked() {
+            commands.push(ViewerCommand::Reset);
+        }
+    });
+    let (kept, age) = app.sim.history();
+    let mut ago = -(age as f32) * TICK_SECS;
+    let reach = (kept as f32 * TICK_SECS).max(TICK_SECS);
+    let slider = Slider::new(&mut ago, -reach..=0.0).text("seconds ago").fixed_decimals(2);
+    if ui.add(slider).changed() {
+        commands.push(ViewerCommand::Scrub(((-ago / TICK_SECS).round() as usize).min(kept)));
+    }
+    let mut step = Clock::SPEEDS.iter().position(|s| *s >= app.clock.speed * 0.99).unwrap_or(0);
+    let last = Clock::SPEEDS.len() - 1;
+    let name = |index: f64| match Clock::SPEEDS[(index as usize).min(last)] {
+        speed if speed < 1.0 => format!("1/{}", (1.0 / speed).round()),
+        speed => format!("{speed}"),
+    };
+    let slider = Slider::new(&mut step, 0..=last).text("speed").custom_formatter(move |n, _| name(n));
+    if ui.add(slider).changed() {
+        commands.push(ViewerCommand::Speed(Clock::SPEEDS[step.min(last)]));
+    }
+}
+
+fn matter(ui: &mut Ui, app: &App, commands: &mut Vec<ViewerCommand>) {
+    let mut settings = app.sim.model().settings();
+    let before = settings;
+    ui.add(Slider::new(&mut settings.gravity, 0.0..=3.0).text("gravity"));
+    ui.add(Slider::new(&mut settings.friction, 0.0..=3.0).text("friction"));
+    ui.add(Slider::new(&mut settings.strength, 0.0..=3.0).text("strength"));
+    if settings != before {
+        commands.push(ViewerCommand::Settings(settings));
+    }
+}

@@ -1,0 +1,192 @@
+//! The demo in a window: events in, frames out. Whatever the surface does, the demo goes on.
+
+use std::path::PathBuf;
+use std::sync::Arc;
+use std::time::Instant;
+
+use anyhow::Context as _;
+use winit::application::ApplicationHandler;
+use winit::event::WindowEvent;
+use winit::event_loop::{ActiveEventLoop, ControlFlow, EventLoop};
+use winit::window::{Window, WindowId};
+
+use crate::app::App;
+use crate::cli::Demo;
+use crate::desk::Desk;
+use crate::gpu::Gpu;
+use crate::mesh::SkinnedMesh;
+use crate::pads::Pads;
+
+/// Runs the demo until its window is closed.
+///
+/// # Errors
+/// When there is no display or nothing to draw with.
+pub fn run(demo: &Demo, app: App, mesh: SkinnedMesh, layout: Option<PathBuf>) -> anyhow::Result<()> {
+    let events = EventLoop::new().context("no display: set DISPLAY or WAYLAND_DISPLAY, or use --headless")?;
+    events.set_control_flow(ControlFlow::Poll);
+    let pads = if demo.no_pad { None } else { Some(Pads::start()) };
+    let mut host = Host {
+        app,
+        pads,
+        layout,
+        mesh: Some(mesh),
+        size: demo.size,
+        trace: demo.trace,
+        stage: None,
+        failed: None,
+    };
+    events.run_app(&mut host)?;
+    if let Some(stage) = host.stage {
+        stage.desk.finish();
+    }
+    if let Some(path) = &host.layout {
+        host.app.layout.save(path)?;
+    }
+    host.failed.map_or(Ok(()), Err)
+}
+
+/// What the event loop calls.
+struct Host {
+    app: App,
+    pads: Option<Pads>,
+    layout: Option<PathBuf>,
+    mesh: Option<SkinnedMesh>,
+    size: [u32; 2],
+    trace: bool,
+    stage: Option<Stage>,
+    failed: Option<anyhow::Error>,
+}
+
+/// What there is once the window is.
+struct Stage {
+    window: Arc<Window>,
+    surface: wgpu::Surface<'static>,
+    configuration: wgpu::SurfaceConfiguration,
+    gpu: Gpu,
+    desk: Desk,
+    egui: egui_winit::State,
+    last: Instant,
+    traced: Instant,
+}
+
+impl ApplicationHandler for Host {
+    fn resumed(&mut self, events: &ActiveEventLoop) {
+        let Some(mesh) = self.mesh.take() else { return };
+        match Stage::new(events, self.size, mesh, &mut self.app) {
+            Ok(stage) => self.stage = Some(stage),
+            Err(error) => {
+                self.failed = Some(error);
+                events.exit();
+            }
+        }
+    }
+
+    fn window_event(&mut self, events: &ActiveEventLoop, _: WindowId, event: WindowEvent) {
+        let Some(stage) = &mut self.stage else { return };
+        // egui tells what it wants through its own context; nothing needs the answer.
+        let _ = stage.egui.on_window_event(&stage.window, &event);
+        match event {
+            WindowEvent::CloseRequested => events.exit(),
+            WindowEvent::Resized(size) => stage.resize([size.width, size.height]),
+            WindowEvent::DroppedFile(path) => self.app.dropped = Some(path),
+            WindowEvent::RedrawRequested => {
+                if let Some(pads) = &mut self.pads {
+                    pads.poll(&mut self.app.pad);
+                }
+                stage.frame(&mut self.app, self.trace);
+                if self.app.quit {
+                    events.exit();
+                }
+            }
+            _ => {}
+        }
+    }
+
+    fn about_to_wait(&mut self, _: &ActiveEventLoop) {
+        if let Some(stage) = &self.stage {
+            stage.window.request_redraw();
+        }
+    }
+}
+
+impl Stage {
+    fn new(
+        events: &ActiveEventLoop,
+        size: [u32; 2],
+        mesh: SkinnedMesh,
+        app: &mut App,
+    ) -> anyhow::Result<Self> {
+        let size = winit::dpi::PhysicalSize::new(size[0], size[1]);
+        let attributes = Window::default_attributes().with_title("Policy Space").with_inner_size(size);
+        let window = Arc::new(events.create_window(attributes).context("the system gives no window")?);
+        let (gpu, surface, adapter) = Gpu::for_window(Arc::clone(&window))?;
+        let size = window.inner_size();
+        let mut configuration = surface
+            .get_default_config(&adapter, size.width.max(1), size.height.max(1))
+            .context("the adapter cannot draw into the window")?;
+        let formats = surface.get_capabilities(&adapter).formats;
+        if let Some(plain) = formats.iter().find(|f| !f.is_srgb()) {
+            configuration.format = *plain;
+        }
+        surface.configure(&gpu.device, &configuration);
+        app.adapter.clone_from(&gpu.adapter_name);
+        if gpu.is_software {
+            app.notice = Some(format!("No graphics card was found: {} draws, slowly.", gpu.adapter_name));
+        }
+        let desk = Desk::new(&gpu, configuration.format, mesh);
+        let egui = egui_winit::State::new(
+            desk.context().clone(),
+            egui::ViewportId::ROOT,
+            &window,
+            Some(window.scale_factor() as f32),
+            None,
+            Some(gpu.device.limits().max_texture_dimension_2d as usize),
+        );
+        let now = Instant::now();
+        Ok(Self { window, surface, configuration, gpu, desk, egui, last: now, traced: now })
+    }
+
+    fn resize(&mut self, size: [u32; 2]) {
+        if size.contains(&0) {
+            return;
+        }
+        (self.configuration.width, self.configuration.height) = (size[0], size[1]);
+        self.surface.configure(&self.gpu.device, &self.configuration);
+    }
+
+    fn frame(&mut self, app: &mut App, trace: bool) {
+        let now = Instant::now();
+        let dt = (now - self.last).as_secs_f32();
+        self.last = now;
+        app.advance(dt);
+        if trace && (now - self.traced).as_secs_f32() > 0.25 {
+            self.traced = now;
+            crate::cli::trace(app);
+        }
+        let input = self.egui.take_egui_input(&self.window);
+        let mut output = self.desk.panels(app, input, 0.0);
+        self.egui.handle_platform_output(&self.window, std::mem::take(&mut output.platform_output));
+        let size = [self.configuration.width, self.configuration.height];
+        let texture = match self.surface.get_current_texture() {
+            wgpu::CurrentSurfaceTexture::Success(texture)
+            | wgpu::CurrentSurfaceTexture::Suboptimal(texture) => Some(texture),
+            wgpu::CurrentSurfaceTexture::Outdated | wgpu::CurrentSurfaceTexture::Lost => {
+                self.surface.configure(&self.gpu.device, &self.configuration);
+                None
+            }
+            // Minimised, covered or late: the world goes on, there is nothing to draw into.
+            _ => None,
+        };
+        let Some(texture) = texture else {
+            self.desk.skip(output);
+            std::thread::sleep(std::time::Duration::from_millis(10));
+            return;
+        };
+        let view = texture.texture.create_view(&wgpu::TextureViewDescriptor::default());
+        self.desk.draw(app, output, &view, size);
+        self.window.pre_present_notify();
+        self.gpu.queue.present(texture);
+        let drawn = now.elapsed().as_secs_f32() * 1e3;
+        app.plots.draw.push(drawn);
+    }
+}
