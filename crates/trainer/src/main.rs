@@ -57,7 +57,10 @@ fn main() -> Result<()> {
         Verb::Pack(verb) => {
             cli::pack::run(&arguments.model()?, &arguments.normalisers()?, &arguments.runs, verb)
         }
-        Verb::Evaluate(verb) => cli::evaluate::run(&arguments.model()?, verb),
+        Verb::Evaluate(verb) => {
+            let clips = arguments.clips().ok();
+            cli::evaluate::run(&arguments.model()?, &arguments.recipes, clips.as_ref(), verb)
+        }
         Verb::Compare(verb) => cli::compare::run(verb),
         Verb::Pca(verb) => cli::pca::run(&arguments.model()?, verb),
         Verb::View(verb) => cli::view::run(&arguments.model()?, || arguments.clips(), verb),

@@ -146,7 +146,7 @@ impl Recipe {
             (env.speed_mps.is_finite() && env.parent_speed_mps.is_finite(), "environment.speed_mps", "a finite speed", env.speed_mps.to_string()),
             (ordered(env.target_metres), "environment.target_metres", "least and most distance", format!("{:?}", env.target_metres)),
             (ordered(env.target_secs), "environment.target_secs", "least and most time", format!("{:?}", env.target_secs)),
-            (unit(env.stop) && unit(env.start.parent) && unit(env.start.ragdoll), "environment.stop and start", "shares in [0, 1]", format!("{:?}", env.start)),
+            (unit(env.stop) && unit(env.start.other) && unit(env.start.ragdoll), "environment.stop and start", "shares in [0, 1]", format!("{:?}", env.start)),
             ((0.0..1.0).contains(&ppo.gamma), "ppo.gamma", "a discount in [0, 1)", ppo.gamma.to_string()),
             (unit(ppo.gae_lambda), "ppo.gae_lambda", "a discount in [0, 1]", ppo.gae_lambda.to_string()),
             (positive(ppo.deviation), "ppo.deviation", "a positive deviation", ppo.deviation.to_string()),

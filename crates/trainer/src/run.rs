@@ -10,7 +10,7 @@ use anyhow::{Context, Result, bail};
 use physics_bridge::Model;
 
 use crate::checkpoint::{Checkpoint, Trained, write_atomically};
-use crate::clip::ClipFolder;
+use crate::clip::{ClipError, ClipFolder};
 use crate::env::{Demonstrations, Normalisers};
 use crate::plot;
 use crate::recipe::Recipe;
@@ -122,11 +122,19 @@ impl Workplace {
         let earlier = if resume && path.exists() { Some(Checkpoint::load(&path)?) } else { None };
         let demonstrations = self.demonstrations(&recipe)?;
         let parent = self.parent(&recipe)?;
+        let starts = match &recipe.environment.start.clips[..] {
+            [] => parent.as_ref().map(|p| p.demonstrations.clone()),
+            names => {
+                let clips = names.iter().map(|n| Ok((self.clips.load(n)?, 1.0)));
+                let clips = clips.collect::<Result<Vec<_>, ClipError>>()?;
+                Some(Demonstrations::from_clips(&clips, &self.model, &self.normalisers.frame)?)
+            }
+        };
         // A resumed run must not meet the same episodes again.
         let seed_now = seed.wrapping_add(earlier.as_ref().map_or(0, |c| c.progress.samples));
         let text = toml::to_string(&recipe).context("cannot write the recipe")?;
         let mut training =
-            Training::new(recipe, &self.model, self.normalisers.clone(), demonstrations, parent, seed_now);
+            Training::new(recipe, &self.model, self.normalisers.clone(), (demonstrations, starts), parent, seed_now);
         let secs = match earlier {
             Some(checkpoint) => restore(&mut training, &checkpoint, &path)?,
             None => {

@@ -45,6 +45,7 @@ pub struct Training {
     logits: Vec<f32>,
     demonstrations: Demonstrations,
     parent_demonstrations: Option<Demonstrations>,
+    start_demonstrations: Option<Demonstrations>,
     normalisers: Normalisers,
     model: Model,
     scaling: ActionScaling,
@@ -73,13 +74,14 @@ pub struct IterationReport {
 }
 
 impl Training {
-    /// Starts a run from random parameters or from the parent's.
+    /// Starts a run from random parameters or from the parent's. `demonstrations` are the skill's own clips and those that
+    /// episodes may start from besides.
     #[must_use]
     pub fn new(
         recipe: Recipe,
         model: &Model,
         normalisers: Normalisers,
-        demonstrations: Demonstrations,
+        (demonstrations, start_demonstrations): (Demonstrations, Option<Demonstrations>),
         parent: Option<Parent>,
         seed: u64,
     ) -> Self {
@@ -112,7 +114,7 @@ impl Training {
         let stage = Stage {
             config: &recipe.environment,
             demonstrations: &demonstrations,
-            parent_demonstrations: parent_demonstrations.as_ref(),
+            start_demonstrations: start_demonstrations.as_ref(),
             normalisers: &normalisers,
             edge: recipe.edge,
         };
@@ -129,6 +131,7 @@ impl Training {
             population,
             demonstrations,
             parent_demonstrations,
+            start_demonstrations,
             normalisers,
             model: model.clone(),
             scaling,
@@ -151,7 +154,7 @@ impl Training {
         let stage = Stage {
             config: &self.recipe.environment,
             demonstrations: &self.demonstrations,
-            parent_demonstrations: self.parent_demonstrations.as_ref(),
+            start_demonstrations: self.start_demonstrations.as_ref(),
             normalisers: &self.normalisers,
             edge: self.recipe.edge,
         };
@@ -197,7 +200,7 @@ impl Training {
         let stage = Stage {
             config: &self.recipe.environment,
             demonstrations: &self.demonstrations,
-            parent_demonstrations: self.parent_demonstrations.as_ref(),
+            start_demonstrations: self.start_demonstrations.as_ref(),
             normalisers: &self.normalisers,
             edge: self.recipe.edge,
         };

@@ -56,9 +56,9 @@ fn every_recipe_runs_and_binds_into_a_pack() {
     for entry in std::fs::read_dir(&recipes).unwrap() {
         let path = entry.unwrap().path();
         if path.extension().is_some_and(|e| e == "toml") {
-            for clip in Recipe::load(&path).unwrap().clips {
-                write_clip(&motions, &clip.name);
-            }
+            let recipe = Recipe::load(&path).unwrap();
+            recipe.clips.iter().for_each(|clip| write_clip(&motions, &clip.name));
+            recipe.environment.start.clips.iter().for_each(|name| write_clip(&motions, name));
         }
     }
     let clips = ClipFolder::from_argument(Some(motions)).unwrap();

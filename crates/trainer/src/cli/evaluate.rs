@@ -1,15 +1,18 @@
 //! `trainer evaluate`: measures a pack.
 
-use std::path::PathBuf;
+use std::collections::BTreeMap;
+use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::time::Instant;
 
 use anyhow::{Context, Result};
 use clap::Args;
 use physics_bridge::Model;
-use policy_core::CharacterPack;
+use policy_core::{CharacterPack, CharacterState};
 use trainer::checkpoint::write_atomically;
-use trainer::evaluate::{Effort, evaluate};
+use trainer::clip::ClipFolder;
+use trainer::evaluate::{Effort, clip_states, evaluate};
+use trainer::recipe::Recipe;
 
 /// Arguments of the verb.
 #[derive(Args)]
@@ -25,13 +28,22 @@ pub(crate) struct Arguments {
 }
 
 /// Measures.
-pub(crate) fn run(model: &Model, arguments: &Arguments) -> Result<()> {
+pub(crate) fn run(
+    model: &Model,
+    recipes: &Path,
+    clips: Option<&ClipFolder>,
+    arguments: &Arguments,
+) -> Result<()> {
     let path = &arguments.pack;
     let bytes = std::fs::read(path).with_context(|| format!("cannot read {}", path.display()))?;
     let pack = CharacterPack::from_bytes(&bytes).with_context(|| path.display().to_string())?;
     let effort = if arguments.quick { Effort::QUICK } else { Effort::FULL };
     let start = Instant::now();
-    let evaluation = evaluate(model, &Arc::new(pack), &effort, |what| {
+    let states = match clips {
+        Some(clips) => states_of_clips(model, recipes, clips, &pack)?,
+        None => BTreeMap::new(),
+    };
+    let evaluation = evaluate(model, &Arc::new(pack), &effort, &states, |what| {
         eprintln!("{:5.0} s {what}", start.elapsed().as_secs_f32());
     });
     let text = serde_json::to_string_pretty(&evaluation)?;
@@ -43,4 +55,24 @@ pub(crate) fn run(model: &Model, arguments: &Arguments) -> Result<()> {
         None => println!("{text}"),
     }
     Ok(())
+}
+
+/// States of the first clip of every skill that has a recipe.
+fn states_of_clips(
+    model: &Model,
+    recipes: &Path,
+    clips: &ClipFolder,
+    pack: &CharacterPack,
+) -> Result<BTreeMap<String, Vec<CharacterState>>> {
+    let mut states = BTreeMap::new();
+    for node in pack.graph().nodes() {
+        let path = recipes.join(format!("{}.toml", node.name));
+        if !path.is_file() {
+            continue;
+        }
+        if let Some(clip) = Recipe::load(&path)?.clips.first() {
+            states.insert(node.name.clone(), clip_states(model, &clips.load(&clip.name)?)?);
+        }
+    }
+    Ok(states)
 }

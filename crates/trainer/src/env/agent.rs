@@ -61,8 +61,8 @@ impl Agent {
     pub fn reset(&mut self, stage: &Stage<'_>, first: bool) {
         let config = stage.config;
         self.choose_place();
-        let start = match stage.parent_demonstrations {
-            Some(parent) if self.rng.chance(config.start.parent) => parent.draw_start(&mut self.rng),
+        let start = match stage.start_demonstrations {
+            Some(other) if self.rng.chance(config.start.other) => other.draw_start(&mut self.rng),
             _ => stage.demonstrations.draw_start(&mut self.rng),
         };
         if self.rng.chance(config.start.ragdoll) {

@@ -25,19 +25,15 @@ pub enum Fall {
 }
 
 /// Where episodes start.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct Start {
-    /// Share of episodes that start in a pose of the parent's clips.
-    pub parent: f32,
-    /// Share of episodes that start limp on the ground, dropped there in a random pose.
+    /// Share of episodes that start in a pose of other clips than the skill's own.
+    pub other: f32,
+    /// Those clips; the parent's when there are none.
+    pub clips: Vec<String>,
+    /// Share of episodes that start limp on the ground, dropped there in a random attitude.
     pub ragdoll: f32,
-}
-
-impl Default for Start {
-    fn default() -> Self {
-        Self { parent: 0.0, ragdoll: 0.0 }
-    }
 }
 
 /// Settings of the environment.

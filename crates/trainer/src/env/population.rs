@@ -19,8 +19,8 @@ pub struct Stage<'a> {
     pub config: &'a EnvironmentConfig,
     /// Clips of the skill.
     pub demonstrations: &'a Demonstrations,
-    /// Clips of its parent, for starts.
-    pub parent_demonstrations: Option<&'a Demonstrations>,
+    /// Other clips, for starts.
+    pub start_demonstrations: Option<&'a Demonstrations>,
     /// The graph's normalisers.
     pub normalisers: &'a Normalisers,
     /// True when characters act with blends of parent and child.

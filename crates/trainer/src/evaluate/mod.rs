@@ -1,17 +1,21 @@
 //! Measures of a pack, through the same controller as a game: survival along paths, reached speed, get-up, roll,
-//! pushes, and distances between parameters. Needs no clips.
+//! pushes, distances between parameters, and how a motion looks beside its clip.
 
+mod motion;
 mod paths;
 mod push;
 mod report;
 mod skills;
 mod subject;
+mod upright;
 
+pub use motion::{MotionReport, clip_states, pose_error, watch};
 pub use paths::{measure_coordinates, measure_sweep};
 pub use push::measure_push;
 pub use report::{Evaluation, ModeReport, PathReport, PushReport, RateReport, SpeedPoint, evaluate};
 pub use skills::{measure_get_up, measure_roll};
 pub use subject::{Subject, Wanderer};
+pub use upright::{UprightReport, measure_upright};
 
 /// How much is measured.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -5,10 +5,13 @@ use std::sync::Arc;
 
 use glam::Vec3;
 use physics_bridge::Model;
-use policy_core::{BlendMode, CharacterPack};
+use policy_core::{BlendMode, CharacterPack, CharacterState};
 use serde::Serialize;
 
-use super::{Effort, measure_coordinates, measure_get_up, measure_push, measure_roll, measure_sweep};
+use super::{
+    Effort, MotionReport, UprightReport, measure_coordinates, measure_get_up, measure_push, measure_roll, measure_sweep,
+    measure_upright, pose_error, watch,
+};
 
 /// All measures of a pack.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
@@ -21,8 +24,18 @@ pub struct Evaluation {
     /// Rolls.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub roll: Option<RateReport>,
+    /// By policy: who is still up after 10 s of turns.
+    pub upright: BTreeMap<String, UprightReport>,
     /// By skill.
     pub push: BTreeMap<String, PushReport>,
+    /// By skill: mean distance of the bodies to those of its clip under dynamic time warping, metres.
+    #[serde(skip_serializing_if = "BTreeMap::is_empty")]
+    pub pose_error_m: BTreeMap<String, f32>,
+    /// By skill: how it moves, straight ahead.
+    pub motion: BTreeMap<String, MotionReport>,
+    /// By skill: how its clip moves.
+    #[serde(skip_serializing_if = "BTreeMap::is_empty")]
+    pub clip_motion: BTreeMap<String, MotionReport>,
     /// Squared distance of the parameters at the two ends of each edge.
     pub parameter_distance: BTreeMap<String, f64>,
 }
@@ -75,12 +88,14 @@ pub struct PushReport {
     pub sideways_newton: f32,
 }
 
-/// Measures everything; `note` is told what comes next.
+/// Measures everything; `note` is told what comes next. `clips` holds the states of each skill's clips, see
+/// [`clip_states`](super::clip_states); without them there is no pose error.
 #[must_use]
 pub fn evaluate(
     model: &Model,
     pack: &Arc<CharacterPack>,
     effort: &Effort,
+    clips: &BTreeMap<String, Vec<CharacterState>>,
     mut note: impl FnMut(&str),
 ) -> Evaluation {
     let graph = pack.graph();
@@ -113,10 +128,24 @@ pub fn evaluate(
         evaluation.paths.insert(path.name.clone(), report);
     }
     for (index, node) in graph.nodes().iter().enumerate().filter(|(_, n)| n.fall_height.is_some()) {
-        note(&format!("pushes on {}", node.name));
+        note(&format!("turns and pushes with {}", node.name));
+        let upright = measure_upright(model, pack, index, effort.characters);
+        evaluation.upright.insert(node.name.clone(), upright);
         let push = |direction| measure_push(model, pack, index, direction, effort.pushed);
         let report = PushReport { forward_newton: push(Vec3::X), sideways_newton: push(Vec3::Y) };
         evaluation.push.insert(node.name.clone(), report);
+    }
+    note("motion");
+    for (index, node) in graph.nodes().iter().enumerate().filter(|(_, n)| n.speed_mps.is_some()) {
+        let states = watch(model, pack, index);
+        if states.is_empty() {
+            continue;
+        }
+        evaluation.motion.insert(node.name.clone(), MotionReport::of(&states));
+        if let Some(clip) = clips.get(&node.name) {
+            evaluation.pose_error_m.insert(node.name.clone(), pose_error(&states, clip));
+            evaluation.clip_motion.insert(node.name.clone(), MotionReport::of(clip));
+        }
     }
     note("get-up and roll");
     let rate = |success| RateReport { success, tries: effort.drops };

@@ -46,8 +46,10 @@ impl Subject {
 
     /// Stands it up at the origin, walking.
     pub fn reset(&mut self, heading: Heading) {
-        let speed = if self.controller.report().position.as_node() == Some(0) { 0.0 } else { START_MPS };
         self.controller.reset();
+        let node = self.controller.report().position.nearest_node();
+        let stands = self.controller.pack().graph().nodes()[node].speed_mps == Some(0.0);
+        let speed = if stands { 0.0 } else { START_MPS };
         self.character.stand_at(0.0, 0.0, heading, speed).expect("zeros are finite");
         self.character.sense_into(&mut self.state);
     }
