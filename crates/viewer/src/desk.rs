@@ -77,9 +77,9 @@ impl Desk {
 
     /// Takes up what a frame that is not drawn has changed.
     pub fn skip(&mut self, output: egui::FullOutput) {
-        let prepared = Prepared::new(&self.context, output);
-        self.overlay.upload(&prepared);
-        self.overlay.free(&prepared);
+        let mut prepared = Prepared::new(&self.context, output);
+        self.overlay.upload(&mut prepared);
+        self.overlay.free(&mut prepared);
     }
 
     /// Draws picture and panels into `view` and sends it off; records when that is asked for.
@@ -90,13 +90,13 @@ impl Desk {
         view: &wgpu::TextureView,
         size: [u32; 2],
     ) {
-        let prepared = self.prepare(app, output);
+        let mut prepared = self.prepare(app, output);
         let mut encoder = self.gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
         self.renderer.draw(&mut encoder, view, size, &self.scene);
         self.overlay.draw(&mut encoder, view, size, &prepared);
         self.gpu.queue.submit([encoder.finish()]);
         self.record(app, size, &prepared);
-        self.overlay.free(&prepared);
+        self.overlay.free(&mut prepared);
     }
 
     /// Draws picture and, with `panels`, their overlay off screen and reads it back.
@@ -110,9 +110,9 @@ impl Desk {
         size: [u32; 2],
         panels: bool,
     ) -> Result<RgbaImage, GpuError> {
-        let prepared = self.prepare(app, output);
+        let mut prepared = self.prepare(app, output);
         let picture = self.capture(size, panels.then_some(&prepared));
-        self.overlay.free(&prepared);
+        self.overlay.free(&mut prepared);
         picture
     }
 
@@ -124,8 +124,8 @@ impl Desk {
             app.ground_changed = false;
         }
         app.set_scene(&mut self.scene, self.around);
-        let prepared = Prepared::new(&self.context, output);
-        self.overlay.upload(&prepared);
+        let mut prepared = Prepared::new(&self.context, output);
+        self.overlay.upload(&mut prepared);
         prepared
     }
 

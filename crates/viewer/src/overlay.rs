@@ -41,18 +41,18 @@ impl Overlay {
     }
 
     /// Takes up textures that panels changed. Once for each [`Prepared`], before it is drawn.
-    pub fn upload(&mut self, prepared: &Prepared) {
-        for (id, delta) in &prepared.textures.set {
-            for delta in delta {
-                self.renderer.update_texture(&self.gpu.device, &self.gpu.queue, *id, delta);
+    pub fn upload(&mut self, prepared: &mut Prepared) {
+        for (id, deltas) in prepared.textures.set.drain() {
+            for delta in &deltas {
+                self.renderer.update_texture(&self.gpu.device, &self.gpu.queue, id, delta);
             }
         }
     }
 
     /// Frees textures that no panel needs any more. After the last drawing of it.
-    pub fn free(&mut self, prepared: &Prepared) {
-        for id in &prepared.textures.free {
-            self.renderer.free_texture(id);
+    pub fn free(&mut self, prepared: &mut Prepared) {
+        for id in prepared.textures.free.drain() {
+            self.renderer.free_texture(&id);
         }
     }
 

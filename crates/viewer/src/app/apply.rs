@@ -65,7 +65,7 @@ impl App {
             }
             ViewerCommand::RewindAfterFailure => {
                 let (kept, _) = self.sim.history();
-                self.sim.rewind_to(((REWIND_SECS / TICK_SECS) as usize).min(kept));
+                self.sim.rewind_to(((REWIND_SECS / TICK_SECS).round() as usize).min(kept));
                 self.failure = None;
             }
             ViewerCommand::ResetAfterFailure => {

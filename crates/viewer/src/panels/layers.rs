@@ -47,7 +47,8 @@ fn policy(ui: &mut Ui, app: &App, label: &str, chosen: &mut usize) {
 fn presets(ui: &mut Ui, app: &App, layers: &mut Layers, commands: &mut Vec<ViewerCommand>) {
     let pack = app.sim.pack();
     ui.horizontal(|ui| {
-        ui.add(egui::TextEdit::singleline(&mut layers.name).desired_width(100.0));
+        let label = ui.label("Name").id;
+        ui.add(egui::TextEdit::singleline(&mut layers.name).desired_width(90.0)).labelled_by(label);
         if ui.button("Save preset").clicked() && !layers.name.trim().is_empty() {
             commands.push(ViewerCommand::SavePreset(layers.preset(pack)));
         }

@@ -43,7 +43,7 @@ fn time(ui: &mut Ui, app: &App, commands: &mut Vec<ViewerCommand>) {
         }
     });
     let (kept, age) = app.sim.history();
-    let mut ago = -(age as f32) * TICK_SECS;
+    let mut ago = 0.0 - age as f32 * TICK_SECS;
     let reach = (kept as f32 * TICK_SECS).max(TICK_SECS);
     let slider = Slider::new(&mut ago, -reach..=0.0).text("seconds ago").fixed_decimals(2);
     if ui.add(slider).changed() {

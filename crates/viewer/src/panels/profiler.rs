@@ -17,7 +17,7 @@ pub(super) fn show(ui: &mut Ui, app: &App) {
         ("panels", &plots.ui),
     ];
     ui.label(format!("real-time factor {:.2}", app.clock.realtime_factor));
-    egui::Grid::new("times").num_columns(2).show(ui, |ui| {
+    egui::Grid::new("numbers").num_columns(2).show(ui, |ui| {
         for (name, series) in curves {
             ui.label(name);
             ui.label(format!("{:.3} ms", series.mean(WINDOW)));

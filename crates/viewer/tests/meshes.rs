@@ -1,0 +1,159 @@
+//! Humanoids from glTF: ours is what the generator makes, others are refused with a clear message.
+
+use glam::{Quat, Vec3};
+use policy_core::{BODY_NAMES, Body};
+use viewer::assets::{HUMANOID_GLB, HUMANOID_MJCF};
+use viewer::mannequin;
+use viewer::mesh::{MeshError, SkinnedMesh};
+
+/// The document of our mannequin and its binary chunk.
+fn parts() -> (serde_json::Value, Vec<u8>) {
+    let length = u32::from_le_bytes(HUMANOID_GLB[12..16].try_into().unwrap()) as usize;
+    let document = serde_json::from_slice(&HUMANOID_GLB[20..20 + length]).unwrap();
+    (document, HUMANOID_GLB[28 + length..].to_vec())
+}
+
+fn glb(document: &serde_json::Value, binary: &[u8]) -> Vec<u8> {
+    let mut text = document.to_string().into_bytes();
+    text.resize(text.len().next_multiple_of(4), b' ');
+    let mut bytes = b"glTF".to_vec();
+    let total = 28 + text.len() + binary.len();
+    for word in [2, total as u32, text.len() as u32] {
+        bytes.extend_from_slice(&word.to_le_bytes());
+    }
+    bytes.extend_from_slice(b"JSON");
+    bytes.extend_from_slice(&text);
+    bytes.extend_from_slice(&(binary.len() as u32).to_le_bytes());
+    bytes.extend_from_slice(b"BIN\0");
+    bytes.extend_from_slice(binary);
+    bytes
+}
+
+/// What is said of our mannequin after `change`.
+fn refused(change: impl FnOnce(&mut serde_json::Value)) -> String {
+    let (mut document, binary) = parts();
+    change(&mut document);
+    SkinnedMesh::from_bytes(&glb(&document, &binary)).expect_err("should be refused").to_string()
+}
+
+#[test]
+fn the_asset_is_what_the_generator_makes() {
+    assert!(
+        mannequin::generate() == HUMANOID_GLB,
+        "run: cargo run -p viewer --bin mannequin -- assets/humanoid.glb"
+    );
+}
+
+#[test]
+fn its_rest_pose_is_that_of_the_mjcf() {
+    for body in Body::ALL {
+        let start = HUMANOID_MJCF.find(&format!("<body name=\"{}\"", body.name())).unwrap();
+        let element = HUMANOID_MJCF[start..].split('>').next().unwrap();
+        let text = element.split("pos=\"").nth(1).unwrap().split('"').next().unwrap();
+        let numbers: Vec<f32> = text.split_whitespace().map(|n| n.parse().unwrap()).collect();
+        if body != Body::Pelvis {
+            let apart = (Vec3::from_slice(&numbers) - mannequin::REST_OFFSETS[body.index()]).length();
+            assert!(apart < 1e-6, "{}: {apart}", body.name());
+        }
+    }
+}
+
+#[test]
+fn joints_at_rest_leave_the_mesh_where_it_is() {
+    let mesh = SkinnedMesh::from_bytes(HUMANOID_GLB).unwrap();
+    assert_eq!((mesh.joints.len(), mesh.levels.len()), (15, 2));
+    assert!(mesh.levels[1].vertices.len() * 3 < mesh.levels[0].vertices.len());
+    let mut palette = Vec::new();
+    mesh.palette_into(&mannequin::rest_positions(), &[Quat::IDENTITY; 15], &mut palette);
+    for vertex in &mesh.levels[0].vertices {
+        let total: u32 = vertex.follow.iter().map(|f| u32::from(*f)).sum();
+        assert_eq!(total, 255);
+        let [x, y, z] = vertex.position;
+        let moved =
+            palette[vertex.joints[0] as usize].map(|row| row[0] * x + row[1] * y + row[2] * z + row[3]);
+        // glTF (x, y, z) is (z, x, y) of the world.
+        let apart = Vec3::from(moved).distance(Vec3::new(z, x, y));
+        assert!(apart < 1e-5, "{vertex:?} moved by {apart}");
+    }
+    let lowest = mesh.levels[0].vertices.iter().map(|v| v.position[1]).fold(f32::INFINITY, f32::min);
+    let sole = mannequin::rest_positions()[Body::LeftFoot.index()].z - 0.05;
+    assert!((lowest - sole).abs() < 2e-3, "soles at {lowest}, collision boxes at {sole}");
+}
+
+#[test]
+fn a_t_pose_is_turned_to_the_rest_pose() {
+    let (mut document, mut binary) = parts();
+    // Arms of a T-pose: the left lower arm lies beside its shoulder, not below.
+    let node = document["nodes"].as_array_mut().unwrap();
+    let left = BODY_NAMES.iter().position(|n| *n == "left_lower_arm").unwrap();
+    node[left]["translation"] = serde_json::json!([0.274_788, 0.0, 0.0]);
+    // Without inverse bind matrices the mesh stands in joint space: the joint's own place is its origin.
+    document["skins"][0].as_object_mut().unwrap().remove("inverseBindMatrices");
+    let bytes = glb(&document, &std::mem::take(&mut binary));
+    let mesh = SkinnedMesh::from_bytes(&bytes).unwrap();
+    let upper = mesh.joints.iter().find(|j| j.body == Body::LeftUpperArm).unwrap();
+    // What points sideways in the mesh (x of glTF) points down in the frame of the upper arm.
+    let turned = upper.body_from_mesh.transform_vector3(Vec3::X);
+    assert!(turned.distance(Vec3::NEG_Z) < 1e-4, "{turned}");
+}
+
+#[test]
+fn every_truncation_is_an_error_and_no_panic() {
+    let lengths = (0..64).chain((64..HUMANOID_GLB.len()).step_by(48_611));
+    for length in lengths {
+        assert!(SkinnedMesh::from_bytes(&HUMANOID_GLB[..length]).is_err(), "{length} bytes");
+    }
+    let error = SkinnedMesh::from_bytes(b"# not a mesh").unwrap_err();
+    assert!(matches!(error, MeshError::Parse(_)), "{error}");
+}
+
+#[test]
+fn what_is_missing_is_named() {
+    let said = refused(|d| {
+        d["nodes"][15].as_object_mut().unwrap().remove("skin");
+    });
+    assert!(said.contains("expected a skin"), "{said}");
+    let said = refused(|d| d["nodes"][4]["name"] = "forearm.R".into());
+    assert!(said.contains("right_lower_arm"), "{said}");
+    let said = refused(|d| {
+        d["meshes"][0]["primitives"][1]["attributes"].as_object_mut().unwrap().remove("NORMAL");
+    });
+    assert!(said.contains("mannequin") && said.contains("primitive 1") && said.contains("NORMAL"), "{said}");
+    let said = refused(|d| {
+        d["meshes"][0]["primitives"][0]["attributes"].as_object_mut().unwrap().remove("WEIGHTS_0");
+    });
+    assert!(said.contains("WEIGHTS_0"), "{said}");
+}
+
+#[test]
+fn absurd_counts_and_places_are_refused() {
+    for count in [1_u64 << 20, 1 << 31, 1 << 62] {
+        for accessor in 0..7 {
+            let said = refused(|d| d["accessors"][accessor]["count"] = count.into());
+            assert!(said.contains("accessor") || said.contains("expected"), "{said}");
+        }
+    }
+    let said = refused(|d| d["bufferViews"][2]["byteOffset"] = (1_u64 << 40).into());
+    assert!(said.contains("buffer view 2"), "{said}");
+    let said = refused(|d| d["buffers"][0]["byteLength"] = (1_u64 << 40).into());
+    assert!(said.contains("buffer 0"), "{said}");
+    let said = refused(|d| d["accessors"][0]["type"] = "VEC2".into());
+    assert!(said.contains("POSITION"), "{said}");
+    let said = refused(|d| d["nodes"][2]["children"] = serde_json::json!([0]));
+    assert!(!said.is_empty());
+}
+
+#[test]
+fn numbers_that_make_no_sense_are_refused() {
+    let (document, mut binary) = parts();
+    binary[..4].copy_from_slice(&f32::NAN.to_le_bytes());
+    let said = SkinnedMesh::from_bytes(&glb(&document, &binary)).unwrap_err().to_string();
+    assert!(said.contains("finite") && said.contains("NaN"), "{said}");
+    let (document, mut binary) = parts();
+    let indices = document["meshes"][0]["primitives"][0]["indices"].as_u64().unwrap() as usize;
+    let view = document["accessors"][indices]["bufferView"].as_u64().unwrap() as usize;
+    let start = document["bufferViews"][view]["byteOffset"].as_u64().unwrap() as usize;
+    binary[start..start + 2].copy_from_slice(&u16::MAX.to_le_bytes());
+    let said = SkinnedMesh::from_bytes(&glb(&document, &binary)).unwrap_err().to_string();
+    assert!(said.contains("65535"), "{said}");
+}

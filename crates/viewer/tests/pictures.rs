@@ -1,0 +1,98 @@
+//! Shaders, and pictures against committed ones with a tolerance. Skipped with a message without an adapter.
+
+mod common;
+
+use common::{gpu, simulation};
+use egui_kittest::{SnapshotOptions, try_image_snapshot_options};
+use image::RgbaImage;
+use viewer::app::{App, Layout, PanelKind, Side};
+use viewer::assets;
+use viewer::desk::Desk;
+use viewer::mesh::SkinnedMesh;
+use viewer::render::{OffScreen, RenderConfig, Renderer, SHADERS, Scene};
+use viewer::sim::{Ground, SimConfig};
+use viewer::stage::{Shown, Trail, ground_grid, set_scene};
+
+const SIZE: [u32; 2] = [320, 240];
+
+fn mesh() -> SkinnedMesh {
+    SkinnedMesh::from_bytes(assets::HUMANOID_GLB).unwrap()
+}
+
+/// Compares where the same software renderer drew the committed picture; other adapters round otherwise.
+fn compare(gpu: &viewer::gpu::Gpu, picture: &RgbaImage, name: &str) {
+    if !gpu.is_software {
+        eprintln!("skipped the comparison of {name}: drawn by {}", gpu.adapter_name);
+        return;
+    }
+    let options =
+        SnapshotOptions::new().threshold(2.0).max_failed_pixels(SIZE[0] as usize * SIZE[1] as usize / 50);
+    try_image_snapshot_options(picture, name, &options).unwrap();
+}
+
+#[test]
+fn every_shader_passes_naga() {
+    for (name, source) in SHADERS {
+        let module = naga::front::wgsl::parse_str(source)
+            .unwrap_or_else(|e| panic!("{name}: {}", e.emit_to_string(source)));
+        let mut validator = naga::valid::Validator::new(
+            naga::valid::ValidationFlags::all(),
+            naga::valid::Capabilities::default(),
+        );
+        validator.validate(&module).unwrap_or_else(|e| panic!("{name}: {e:?}"));
+    }
+}
+
+fn draw(gpu: &viewer::gpu::Gpu, app: &App, shown: &Shown) -> RgbaImage {
+    let mut renderer = Renderer::new(gpu, OffScreen::FORMAT, RenderConfig::for_adapter(true), mesh());
+    let model = app.sim.model();
+    renderer.set_ground(ground_grid(model.height_field(), model.height_at(1e4, 1e4)).as_ref());
+    let mut scene = Scene::default();
+    set_scene(&mut scene, &app.sim, &app.camera, 0.7, (1.0, shown, &Trail::default()));
+    renderer.picture(&OffScreen::new(gpu, SIZE), &scene).unwrap()
+}
+
+#[test]
+fn the_standing_mannequin_looks_as_it_did() {
+    let Some(gpu) = gpu() else { return };
+    let app = App::new(simulation(), Layout::default());
+    let picture = draw(&gpu, &app, &Shown::default());
+    // Sky above, mannequin in the middle, ground below: whatever the adapter.
+    let [top, middle] = [(10, 5), (SIZE[0] / 2, SIZE[1] / 2)].map(|(x, y)| picture.get_pixel(x, y).0);
+    assert!(top[2] > top[0], "sky {top:?}");
+    assert_ne!(top, middle);
+    compare(&gpu, &picture, "standing");
+    let shapes =
+        Shown { collision_shapes: true, centre_of_mass: true, contact_forces: true, ..Shown::default() };
+    let picture = draw(&gpu, &app, &shapes);
+    compare(&gpu, &picture, "collision_shapes");
+}
+
+#[test]
+fn hills_and_a_crowd_look_as_they_did() {
+    let Some(gpu) = gpu() else { return };
+    let mut app = App::new(simulation(), Layout::default());
+    app.sim.rebuild(SimConfig { ground: Ground::Wavy, characters: 12, ..SimConfig::default() }).unwrap();
+    (app.camera.distance, app.camera.pitch) = (9.0, 0.45);
+    app.follow(10.0, 1.0);
+    compare(&gpu, &draw(&gpu, &app, &Shown::default()), "hills_and_crowd");
+}
+
+#[test]
+fn panels_over_the_picture_look_as_they_did() {
+    let Some(gpu) = gpu() else { return };
+    let layout = Layout { open: vec![(PanelKind::Paths, Side::Left)], ..Layout::default() };
+    let mut app = App::new(simulation(), layout);
+    let mut desk = Desk::new(&gpu, OffScreen::FORMAT, mesh());
+    let size = [640, 480];
+    for frame in 0..2 {
+        let rect = egui::Rect::from_min_size(egui::Pos2::ZERO, egui::vec2(640.0, 480.0));
+        let input =
+            egui::RawInput { screen_rect: Some(rect), time: Some(f64::from(frame)), ..Default::default() };
+        let output = desk.panels(&mut app, input, 0.7);
+        let picture = desk.picture(&mut app, output, size, true).unwrap();
+        if frame == 1 {
+            compare(&gpu, &picture, "panels");
+        }
+    }
+}

@@ -1,0 +1,126 @@
+//! A real window under Xvfb, driven by the keys that xdotool sends: the character walks where it is told.
+//! Skipped with a message where Xvfb, xdotool or an adapter is missing.
+
+mod common;
+
+use std::io::{BufRead as _, BufReader};
+use std::process::{Child, ChildStderr, Command, Stdio};
+use std::time::{Duration, Instant};
+
+use common::gpu;
+
+/// Ends its process when it goes out of scope.
+struct Running(Child);
+
+impl Drop for Running {
+    fn drop(&mut self) {
+        // It may have ended by itself.
+        let _ = self.0.kill();
+        let _ = self.0.wait();
+    }
+}
+
+fn is_there(program: &str) -> bool {
+    let found = Command::new("which").arg(program).stdout(Stdio::null()).stderr(Stdio::null()).status();
+    let found = found.is_ok_and(|status| status.success());
+    if !found {
+        eprintln!("skipped: {program} is not installed");
+    }
+    found
+}
+
+/// Starts Xvfb on a display that it chooses itself, and answers the display's name.
+fn display() -> Option<(Running, String)> {
+    let mut xvfb = Command::new("Xvfb")
+        .args(["-displayfd", "1", "-screen", "0", "800x600x24", "-nolisten", "tcp"])
+        .stdout(Stdio::piped())
+        .stderr(Stdio::null())
+        .spawn()
+        .ok()?;
+    let mut line = String::new();
+    let out = xvfb.stdout.take()?;
+    let xvfb = Running(xvfb);
+    BufReader::new(out).read_line(&mut line).ok()?;
+    let number = line.trim();
+    if number.is_empty() {
+        eprintln!("skipped: Xvfb gives no display");
+        return None;
+    }
+    Some((xvfb, format!(":{number}")))
+}
+
+/// The demo's trace, line by line.
+struct Trace(BufReader<ChildStderr>);
+
+impl Trace {
+    /// Place of the pelvis and whether it lies, from the next line that says so.
+    fn next(&mut self) -> [f32; 3] {
+        let mut line = String::new();
+        loop {
+            line.clear();
+            assert_ne!(self.0.read_line(&mut line).unwrap(), 0, "the demo has ended");
+            if let Some(at) = line.strip_prefix("tick ").and_then(|l| l.split(" at ").nth(1)) {
+                let numbers: Vec<f32> =
+                    at.split_whitespace().take(3).filter_map(|n| n.parse().ok()).collect();
+                return [numbers[0], numbers[1], numbers[2]];
+            }
+        }
+    }
+
+    /// Waits until `reached` says so of a place; the last place at the latest after 40 seconds, or once it lies.
+    fn until(&mut self, reached: impl Fn([f32; 3]) -> bool) -> [f32; 3] {
+        let start = Instant::now();
+        loop {
+            let at = self.next();
+            if reached(at) || at[2] < STANDS || start.elapsed() > Duration::from_secs(40) {
+                return at;
+            }
+        }
+    }
+}
+
+/// A pelvis lower than this has fallen.
+const STANDS: f32 = 0.6;
+/// A policy may stumble where frames come irregularly; it must not do so every time.
+const ATTEMPTS: usize = 6;
+
+#[test]
+fn the_character_walks_where_the_keys_tell_it() {
+    if !is_there("Xvfb") || !is_there("xdotool") || gpu().is_none() {
+        return;
+    }
+    let Some((_xvfb, display)) = display() else { return };
+    let mut demo = Command::new(env!("CARGO_BIN_EXE_policy-space"))
+        .args(["--no-layout", "--no-pad", "--trace", "--size", "320x240"])
+        .env("DISPLAY", &display)
+        .env_remove("WAYLAND_DISPLAY")
+        .stdout(Stdio::null())
+        .stderr(Stdio::piped())
+        .spawn()
+        .unwrap();
+    let mut trace = Trace(BufReader::new(demo.stderr.take().unwrap()));
+    let _demo = Running(demo);
+    let start = trace.next();
+    let keys = |arguments: &[&str]| {
+        let sent = Command::new("xdotool").args(arguments).env("DISPLAY", &display).status().unwrap();
+        assert!(sent.success(), "{arguments:?}");
+    };
+    keys(&["search", "--sync", "--name", "Policy Space", "windowfocus"]);
+    let mut walked = None;
+    for _ in 0..ATTEMPTS {
+        keys(&["keydown", "w"]);
+        let there = trace.until(|at| at[0] > start[0] + 1.2);
+        keys(&["keyup", "w", "keydown", "a"]);
+        // Then to the left of the screen, which is y.
+        let turned = trace.until(|at| at[1] > there[1] + 0.7);
+        keys(&["keyup", "a"]);
+        walked = Some((there, turned));
+        let straight = there[2] > STANDS && there[0] > start[0] + 1.2 && (there[1] - start[1]).abs() < 0.7;
+        if straight && turned[2] > STANDS && turned[1] > there[1] + 0.7 {
+            return;
+        }
+        keys(&["key", "BackSpace"]);
+        trace.until(|at| at[0].hypot(at[1]) < 0.2);
+    }
+    panic!("it should have walked along x from {start:?} and then along y, and last was at {walked:?}");
+}
