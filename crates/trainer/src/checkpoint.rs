@@ -89,6 +89,18 @@ impl Checkpoint {
         Self { networks, progress: Progress { format: FORMAT, seed, samples, secs, actor_rate, rng, sizes } }
     }
 
+    /// The checkpoint without the optimisers' moments: a third of its size, enough to go on from, after a few
+    /// iterations of finding its pace again.
+    #[must_use]
+    pub fn slim(mut self) -> Self {
+        self.networks.remove("parent_discriminator");
+        for trained in self.networks.values_mut() {
+            trained.adam = Adam { mean: Vec::new(), square: Vec::new(), steps: 0 };
+        }
+        let p = &self.progress;
+        Self::new(self.networks, (p.seed, p.samples, p.secs), p.actor_rate, p.rng)
+    }
+
     /// Writes the file beside its place and moves it there.
     ///
     /// # Errors
@@ -96,11 +108,12 @@ impl Checkpoint {
     pub fn save(&self, path: &Path) -> Result<(), CheckpointError> {
         let io = |source| CheckpointError::Io { path: path.to_owned(), source };
         let parts = |role: &String, t: &Trained| {
-            [
+            let all = [
                 (format!("{role}.parameters"), bytes(&t.network.parameters)),
                 (format!("{role}.mean"), bytes(&t.adam.mean)),
                 (format!("{role}.square"), bytes(&t.adam.square)),
-            ]
+            ];
+            all.into_iter().filter(|(_, data)| !data.is_empty())
         };
         let tensors: Vec<(String, Vec<u8>)> =
             self.networks.iter().flat_map(|(role, t)| parts(role, t)).collect();
@@ -146,13 +159,17 @@ impl Checkpoint {
             let count = network.parameters.len();
             let read = |part: &str| {
                 let name = format!("{role}.{part}");
-                let view = tensors.tensor(&name).map_err(|e| wrong(&format!("tensor {name}"), e.to_string()))?;
+                let view =
+                    tensors.tensor(&name).map_err(|e| wrong(&format!("tensor {name}"), e.to_string()))?;
                 floats(&view, count).ok_or_else(|| {
                     wrong(&format!("{count} finite numbers in {name}"), format!("{:?}", view.shape()))
                 })
             };
             network.parameters = read("parameters")?;
-            let adam = Adam { mean: read("mean")?, square: read("square")?, steps: *steps };
+            let adam = match *steps {
+                0 => Adam::new(count),
+                steps => Adam { mean: read("mean")?, square: read("square")?, steps },
+            };
             networks.insert(role.clone(), Trained { network, adam });
         }
         Ok(Self { networks, progress })
@@ -217,6 +234,16 @@ mod tests {
         checkpoint().save(&path).unwrap();
         assert_eq!(Checkpoint::load(&path).unwrap(), checkpoint());
         assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 1);
+    }
+
+    #[test]
+    fn a_slim_checkpoint_keeps_the_parameters_alone() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("a.safetensors");
+        checkpoint().slim().save(&path).unwrap();
+        let back = Checkpoint::load(&path).unwrap();
+        assert_eq!(back.networks["actor"].network, checkpoint().networks["actor"].network);
+        assert_eq!(back.networks["actor"].adam, Adam::new(26));
     }
 
     #[test]

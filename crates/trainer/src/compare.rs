@@ -4,8 +4,8 @@ use std::hint::black_box;
 use std::time::Instant;
 
 use policy_core::{
-    Arithmetic, Blend, BlendEvaluator, BlendMode, DOF_COUNT, Layer, Mlp, MlpError, MlpScratch, OBSERVATION_LEN,
-    POLICY_INPUT_LEN,
+    Arithmetic, Blend, BlendEvaluator, BlendMode, DOF_COUNT, Layer, Mlp, MlpError, MlpScratch,
+    OBSERVATION_LEN, POLICY_INPUT_LEN,
 };
 
 use crate::Rng;

@@ -16,5 +16,6 @@ pub mod recipe;
 mod rng;
 pub mod run;
 pub mod training;
+pub mod workplace;
 
 pub use rng::{NoiseTable, Rng};

@@ -8,7 +8,7 @@ use physics_bridge::Model;
 use trainer::clip::ClipFolder;
 use trainer::env::Normalisers;
 use trainer::normaliser_file;
-use trainer::run::Workplace;
+use trainer::workplace::Workplace;
 
 mod cli;
 
@@ -25,6 +25,9 @@ struct Arguments {
     /// Folder of runs.
     #[arg(long, global = true, default_value = "runs")]
     runs: PathBuf,
+    /// Folder of kept checkpoints, what runs go on from when there are none of their own.
+    #[arg(long, global = true, default_value = "assets/checkpoints")]
+    kept: PathBuf,
     /// The character.
     #[arg(long, global = true, default_value = "assets/humanoid.xml")]
     model: PathBuf,
@@ -40,6 +43,8 @@ enum Verb {
     Normaliser(cli::normaliser::Arguments),
     /// Binds trained skills into a character pack.
     Pack(cli::pack::Arguments),
+    /// Keeps slim checkpoints of runs, and the normaliser, for others to go on from.
+    Keep(cli::keep::Arguments),
     /// Measures a pack: survival, speed, get-up, roll, pushes.
     Evaluate(cli::evaluate::Arguments),
     /// Prints the cost of a control step beside that of larger networks.
@@ -55,8 +60,10 @@ fn main() -> Result<()> {
     match &arguments.verb {
         Verb::Train(train) => cli::train::run(&arguments.workplace()?, train),
         Verb::Pack(verb) => {
-            cli::pack::run(&arguments.model()?, &arguments.normalisers()?, &arguments.runs, verb)
+            let checkpoint = |skill: &str| arguments.checkpoint(skill);
+            cli::pack::run(&arguments.model()?, &arguments.normalisers()?, &checkpoint, verb)
         }
+        Verb::Keep(verb) => cli::keep::run(&arguments.normalisers()?, &arguments.runs, &arguments.kept, verb),
         Verb::Evaluate(verb) => {
             let clips = arguments.clips().ok();
             cli::evaluate::run(&arguments.model()?, &arguments.recipes, clips.as_ref(), verb)
@@ -85,14 +92,23 @@ impl Arguments {
     }
 
     fn normalisers(&self) -> Result<Normalisers> {
-        normaliser_file::load(&self.normaliser_path())
+        let (own, kept) = (self.normaliser_path(), self.kept.join("normaliser.safetensors"));
+        normaliser_file::load(if own.exists() || !kept.exists() { &own } else { &kept })
             .context("run `trainer normaliser` first: all skills share one normaliser")
+    }
+
+    /// A skill's own checkpoint, else the kept one.
+    fn checkpoint(&self, skill: &str) -> PathBuf {
+        let own = self.runs.join(skill).join("checkpoint.safetensors");
+        let kept = self.kept.join(format!("{skill}.safetensors"));
+        if !own.exists() && kept.exists() { kept } else { own }
     }
 
     fn workplace(&self) -> Result<Workplace> {
         Ok(Workplace {
             recipes: self.recipes.clone(),
             runs: self.runs.clone(),
+            kept: self.kept.clone(),
             clips: self.clips()?,
             model: self.model()?,
             normalisers: self.normalisers()?,

@@ -16,19 +16,17 @@ const NAMES: [(&str, usize); 2] = [("observation", OBSERVATION_LEN), ("discrimin
 /// When the file can't be read or doesn't hold them.
 pub fn load(path: &Path) -> Result<Normalisers, CheckpointError> {
     let data = std::fs::read(path).map_err(|source| CheckpointError::Io { path: path.to_owned(), source })?;
-    let wrong = |expected: String, found: String| CheckpointError::Content {
-        path: path.to_owned(),
-        expected,
-        found,
-    };
-    let tensors = SafeTensors::deserialize(&data)
-        .map_err(|e| wrong("a safetensors file".into(), e.to_string()))?;
+    let wrong =
+        |expected: String, found: String| CheckpointError::Content { path: path.to_owned(), expected, found };
+    let tensors =
+        SafeTensors::deserialize(&data).map_err(|e| wrong("a safetensors file".into(), e.to_string()))?;
     let read = |(name, len): (&str, usize)| {
         let part = |part: &str| {
             let name = format!("{name}.{part}");
             let view = tensors.tensor(&name).map_err(|e| wrong(format!("tensor {name}"), e.to_string()))?;
-            floats(&view, len)
-                .ok_or_else(|| wrong(format!("{len} finite numbers in {name}"), format!("{:?}", view.shape())))
+            floats(&view, len).ok_or_else(|| {
+                wrong(format!("{len} finite numbers in {name}"), format!("{:?}", view.shape()))
+            })
         };
         Normaliser::from_mean_and_deviation(&part("mean")?, &part("deviation")?)
             .map_err(|e| wrong(format!("a normaliser {name}"), e.to_string()))

@@ -4,9 +4,9 @@ use std::path::{Path, PathBuf};
 
 use physics_bridge::Model;
 use policy_core::{
-    ActionScaling, BODY_NAMES, CharacterPack, DISCRIMINATOR_LAYOUT, DiscriminatorEntry, EdgeEntry, Layer, Manifest,
-    Mlp, MlpError, OBSERVATION_LAYOUT, PACK_FORMAT, PACK_VERSION, PackError, PackTensors, PathEntry, PolicyEntry,
-    SkillEntry, JOINT_NAMES,
+    ActionScaling, BODY_NAMES, CharacterPack, DISCRIMINATOR_LAYOUT, DiscriminatorEntry, EdgeEntry,
+    JOINT_NAMES, Layer, Manifest, Mlp, MlpError, OBSERVATION_LAYOUT, PACK_FORMAT, PACK_VERSION, PackError,
+    PackTensors, PathEntry, PolicyEntry, SkillEntry,
 };
 use serde::Deserialize;
 
@@ -96,8 +96,7 @@ impl PackPlan {
     pub fn load(path: &Path) -> Result<Self, BindError> {
         let text = std::fs::read_to_string(path)
             .map_err(|source| BindError::Io { path: path.to_owned(), source })?;
-        toml::from_str(&text)
-            .map_err(|e| BindError::Plan { path: path.to_owned(), message: e.to_string() })
+        toml::from_str(&text).map_err(|e| BindError::Plan { path: path.to_owned(), message: e.to_string() })
     }
 
     /// The plan without skills that `trained` refuses: their nodes, edges and episodic skills go, paths close over

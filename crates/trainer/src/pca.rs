@@ -33,8 +33,7 @@ impl Components {
         let centred: Vec<Vec<f64>> =
             rows.iter().map(|r| r.iter().zip(&mean).map(|(x, m)| f64::from(*x) - m).collect()).collect();
         let total_variance = centred.iter().flatten().map(|x| x * x).sum::<f64>() / n;
-        let mut components =
-            Self { mean, directions: Vec::new(), variances: Vec::new(), total_variance };
+        let mut components = Self { mean, directions: Vec::new(), variances: Vec::new(), total_variance };
         for index in 0..count.min(width) {
             let mut direction: Vec<f64> = (0..width).map(|i| ((i * 7 + index) as f64).sin() + 0.1).collect();
             for _ in 0..ROUNDS {
@@ -61,9 +60,8 @@ impl Components {
     /// Coordinates of a row along the components.
     #[must_use]
     pub fn project(&self, row: &[f32]) -> Vec<f64> {
-        let along = |d: &Vec<f64>| {
-            d.iter().zip(row).zip(&self.mean).map(|((d, x), m)| d * (f64::from(*x) - m)).sum()
-        };
+        let along =
+            |d: &Vec<f64>| d.iter().zip(row).zip(&self.mean).map(|((d, x), m)| d * (f64::from(*x) - m)).sum();
         self.directions.iter().map(along).collect()
     }
 
@@ -113,7 +111,11 @@ mod tests {
             })
             .collect();
         let c = Components::of(&rows, 2);
-        assert!((c.variances[0] - 4.5).abs() < 1e-3 && (c.variances[1] - 0.5).abs() < 1e-3, "{:?}", c.variances);
+        assert!(
+            (c.variances[0] - 4.5).abs() < 1e-3 && (c.variances[1] - 0.5).abs() < 1e-3,
+            "{:?}",
+            c.variances
+        );
         assert!((c.directions[0][0].abs() - 0.5_f64.sqrt()).abs() < 1e-4);
         assert!((c.total_variance - 5.0).abs() < 1e-3);
         let p = c.project(&rows[0]);

@@ -20,7 +20,8 @@ const CURVES: [(&str, &str); 6] = [
 /// # Errors
 /// When the metrics can't be read or the picture can't be written.
 pub fn draw(metrics: &Path, svg: &Path) -> Result<()> {
-    let text = std::fs::read_to_string(metrics).with_context(|| format!("cannot read {}", metrics.display()))?;
+    let text =
+        std::fs::read_to_string(metrics).with_context(|| format!("cannot read {}", metrics.display()))?;
     let mut lines = text.lines();
     let header: Vec<&str> = lines.next().unwrap_or_default().split(',').collect();
     let rows: Vec<Vec<f64>> =

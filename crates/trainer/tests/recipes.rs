@@ -10,7 +10,7 @@ use trainer::env::Normalisers;
 use trainer::nn::Pass;
 use trainer::pack::{Ingredient, PackPlan, bind};
 use trainer::recipe::Recipe;
-use trainer::run::Workplace;
+use trainer::workplace::Workplace;
 
 fn project() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("../..")
@@ -63,7 +63,9 @@ fn every_recipe_runs_and_binds_into_a_pack() {
     }
     let clips = ClipFolder::from_argument(Some(motions)).unwrap();
     let normalisers = Normalisers::from_clips(&[clips.load("walk").unwrap()], &model).unwrap();
-    let workplace = Workplace { recipes, runs, clips, model: model.clone(), normalisers: normalisers.clone() };
+    let kept = folder.path().join("kept");
+    let workplace =
+        Workplace { recipes, runs, kept, clips, model: model.clone(), normalisers: normalisers.clone() };
 
     let order = workplace.recipes_in_order().unwrap();
     let mut ingredients = Vec::new();

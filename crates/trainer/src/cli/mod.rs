@@ -2,6 +2,7 @@
 
 pub(crate) mod compare;
 pub(crate) mod evaluate;
+pub(crate) mod keep;
 pub(crate) mod normaliser;
 pub(crate) mod pack;
 pub(crate) mod pca;

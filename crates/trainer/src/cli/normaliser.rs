@@ -32,7 +32,9 @@ pub(crate) fn run(
 ) -> Result<()> {
     let mut names: BTreeSet<String> = arguments.clips.iter().cloned().collect();
     if names.is_empty() {
-        for entry in std::fs::read_dir(recipes).with_context(|| format!("cannot read {}", recipes.display()))? {
+        for entry in
+            std::fs::read_dir(recipes).with_context(|| format!("cannot read {}", recipes.display()))?
+        {
             let file = entry?.path();
             if file.extension().is_some_and(|e| e == "toml") {
                 names.extend(Recipe::load(&file)?.clips.into_iter().map(|c| c.name));
@@ -44,11 +46,11 @@ pub(crate) fn run(
     println!("{} clips: {}", clips.len(), names.into_iter().collect::<Vec<_>>().join(", "));
     if let Some(other) = &arguments.compare {
         let other = normaliser_file::load(other)?;
-        for (name, a, b) in [
-            ("observation", &ours.observation, &other.observation),
-            ("frame", &ours.frame, &other.frame),
-        ] {
-            let worst = |a: &[f32], b: &[f32]| a.iter().zip(b).map(|(a, b)| (a - b).abs()).fold(0.0, f32::max);
+        for (name, a, b) in
+            [("observation", &ours.observation, &other.observation), ("frame", &ours.frame, &other.frame)]
+        {
+            let worst =
+                |a: &[f32], b: &[f32]| a.iter().zip(b).map(|(a, b)| (a - b).abs()).fold(0.0, f32::max);
             let ratios = a.deviation().iter().zip(b.deviation()).map(|(a, b)| (a / b).ln().abs());
             println!(
                 "{name}: means differ by at most {:.4}, deviations by a factor of at most {:.4}",

@@ -27,13 +27,16 @@ pub(crate) struct Arguments {
 }
 
 /// Binds.
-pub(crate) fn run(model: &Model, normalisers: &Normalisers, runs: &std::path::Path, a: &Arguments) -> Result<()> {
-    let checkpoint = |skill: &str| runs.join(skill).join("checkpoint.safetensors");
+pub(crate) fn run(
+    model: &Model,
+    normalisers: &Normalisers,
+    checkpoint: &dyn Fn(&str) -> PathBuf,
+    a: &Arguments,
+) -> Result<()> {
     let mut plan = PackPlan::load(&a.plan)?;
     if a.partial || !a.without.is_empty() {
-        let left_out = |skill: &str| {
-            a.without.iter().any(|w| w == skill) || (a.partial && !checkpoint(skill).exists())
-        };
+        let left_out =
+            |skill: &str| a.without.iter().any(|w| w == skill) || (a.partial && !checkpoint(skill).exists());
         plan = plan.only(|skill| !left_out(skill));
     }
     let mut ingredients = Vec::new();
@@ -41,7 +44,8 @@ pub(crate) fn run(model: &Model, normalisers: &Normalisers, runs: &std::path::Pa
         ingredients.push(Ingredient::load(&policy.name, &checkpoint(&policy.name))?);
     }
     let pack = bind(&plan, &ingredients, normalisers, model)?;
-    write_atomically(&a.out, &pack.to_bytes()).with_context(|| format!("cannot write {}", a.out.display()))?;
+    write_atomically(&a.out, &pack.to_bytes())
+        .with_context(|| format!("cannot write {}", a.out.display()))?;
     for (node, ingredient) in pack.graph().nodes().iter().zip(&ingredients) {
         println!("{:8} {}", node.name, ingredient.origin);
     }

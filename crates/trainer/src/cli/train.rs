@@ -5,7 +5,8 @@ use std::time::Duration;
 use anyhow::Result;
 use clap::Args;
 use indicatif::{ProgressBar, ProgressStyle};
-use trainer::run::{Run, Workplace};
+use trainer::run::Run;
+use trainer::workplace::Workplace;
 
 /// Arguments of the verb.
 #[derive(Args)]

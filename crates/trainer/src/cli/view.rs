@@ -53,7 +53,8 @@ pub(crate) fn run(model: &Model, folder: impl Fn() -> Result<ClipFolder>, a: &Ar
         let hz = 1.0 / (fitted.motion.dt_secs * stride as f64);
         let poses = Poses { format: "policy-space poses", clip: &clip.name, hz, qpos };
         let text = serde_json::to_string(&poses)?;
-        write_atomically(path, text.as_bytes()).with_context(|| format!("cannot write {}", path.display()))?;
+        write_atomically(path, text.as_bytes())
+            .with_context(|| format!("cannot write {}", path.display()))?;
         println!("wrote {}", path.display());
     }
     Ok(())

@@ -10,6 +10,7 @@ mod json;
 mod motion;
 mod npy;
 mod pickle;
+mod pickle_machine;
 
 pub use error::ClipError;
 pub use fit::{JointFit, JointLimits};
@@ -103,16 +104,16 @@ impl Clip {
     /// How far one cycle moves the root, horizontally.
     #[must_use]
     pub fn cycle_offset(&self) -> Vec3 {
-        (self.root_positions[self.root_positions.len() - 1] - self.root_positions[0]) * Vec3::new(1.0, 1.0, 0.0)
+        (self.root_positions[self.root_positions.len() - 1] - self.root_positions[0])
+            * Vec3::new(1.0, 1.0, 0.0)
     }
 
     /// The mirror image: left and right swapped, y turned round.
     #[must_use]
     pub fn mirrored(&self) -> Self {
         let flip = |q: Quat| Quat::from_xyzw(-q.x, q.y, -q.z, q.w);
-        let mirror = |rotations: &[Quat; BODY_COUNT]| {
-            std::array::from_fn(|i| flip(rotations[MIRRORED_BODY[i]]))
-        };
+        let mirror =
+            |rotations: &[Quat; BODY_COUNT]| std::array::from_fn(|i| flip(rotations[MIRRORED_BODY[i]]));
         Self {
             name: format!("{} (mirrored)", self.name),
             root_positions: self.root_positions.iter().map(|p| Vec3::new(p.x, -p.y, p.z)).collect(),

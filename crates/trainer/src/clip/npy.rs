@@ -12,19 +12,21 @@ use super::{Clip, ClipError};
 /// # Errors
 /// When it is not such a clip.
 pub fn parse(name: &str, bytes: &[u8]) -> Result<Clip, ClipError> {
-    read(name, bytes)
-        .map_err(|message| ClipError::Format { clip: name.into(), message })?
-        .checked()
+    read(name, bytes).map_err(|message| ClipError::Format { clip: name.into(), message })?.checked()
 }
 
 fn read(name: &str, bytes: &[u8]) -> Result<Clip, String> {
     let pickle = Pickle::parse(payload(bytes)?)?;
     let dict = dictionary(&pickle, pickle.root())?;
-    let item = |of: Id, key: &str| pickle.item(of, key).ok_or_else(|| format!("expected `{key}`, found none"));
+    let item =
+        |of: Id, key: &str| pickle.item(of, key).ok_or_else(|| format!("expected `{key}`, found none"));
     let rotations = array(&pickle, item(item(dict, "rotation")?, "arr")?)?;
     let positions = array(&pickle, item(item(dict, "root_translation")?, "arr")?)?;
     if rotations.shape.len() != 3 || rotations.shape[1..] != [BODY_COUNT, 4] {
-        return Err(format!("expected rotations of shape [frames, {BODY_COUNT}, 4], found {:?}", rotations.shape));
+        return Err(format!(
+            "expected rotations of shape [frames, {BODY_COUNT}, 4], found {:?}",
+            rotations.shape
+        ));
     }
     if positions.shape != [rotations.shape[0], 3] {
         return Err(format!("expected translations of shape [frames, 3], found {:?}", positions.shape));
@@ -69,7 +71,9 @@ fn dictionary(pickle: &Pickle, root: Id) -> Result<Id, String> {
     let wrong = || "expected an array of one dictionary".to_owned();
     let Object::Call { state: Some(state), .. } = pickle.object(root) else { return Err(wrong()) };
     let Object::Sequence(parts) = pickle.object(*state) else { return Err(wrong()) };
-    let Some(Object::Sequence(items)) = parts.last().map(|id| pickle.object(*id)) else { return Err(wrong()) };
+    let Some(Object::Sequence(items)) = parts.last().map(|id| pickle.object(*id)) else {
+        return Err(wrong());
+    };
     items.first().copied().ok_or_else(wrong)
 }
 

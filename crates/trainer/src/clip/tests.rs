@@ -111,7 +111,10 @@ fn the_mirror_of_the_mirror_is_the_clip() {
     assert_eq!(twice.local_rotations, clip.local_rotations);
     let once = clip.mirrored();
     assert_eq!(once.root_positions[3].y, -0.2);
-    assert_eq!(once.local_rotations[5][Body::LeftShin.index()], clip.local_rotations[5][Body::RightShin.index()]);
+    assert_eq!(
+        once.local_rotations[5][Body::LeftShin.index()],
+        clip.local_rotations[5][Body::RightShin.index()]
+    );
 }
 
 #[test]

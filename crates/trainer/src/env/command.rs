@@ -25,7 +25,13 @@ pub struct Command {
 impl Command {
     /// A command at the start of an episode at `position`. Without an edge the blend weight is always 1.
     #[must_use]
-    pub fn start(config: &EnvironmentConfig, edge: bool, position: Vec2, heading: f32, rng: &mut Rng) -> Self {
+    pub fn start(
+        config: &EnvironmentConfig,
+        edge: bool,
+        position: Vec2,
+        heading: f32,
+        rng: &mut Rng,
+    ) -> Self {
         let mut command = Self { blend: 1.0, blend_goal: 1.0, ..Self::default() };
         if edge {
             command.blend = draw_blend(rng);

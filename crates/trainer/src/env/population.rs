@@ -129,7 +129,8 @@ impl Population {
         let pairs = self.agents.par_iter_mut().zip(actions.par_chunks_exact(DOF_COUNT)).with_min_len(8);
         pairs.zip(outs).for_each(|((agent, action), (((((end, terms), episode), input), after), judged))| {
             let action: &[f32; DOF_COUNT] = action.try_into().expect("a chunk of this length");
-            let judged: &mut [f32; DISCRIMINATOR_INPUT_LEN] = judged.try_into().expect("a chunk of this length");
+            let judged: &mut [f32; DISCRIMINATOR_INPUT_LEN] =
+                judged.try_into().expect("a chunk of this length");
             (*terms, *end) = agent.step(stage, scaling, action, judged);
             *episode = (*end != Done::No).then(|| agent.episode(*end));
             write_input(agent, stage, after);

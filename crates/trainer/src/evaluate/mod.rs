@@ -36,14 +36,8 @@ pub struct Effort {
 
 impl Effort {
     /// What figures are published from.
-    pub const FULL: Effort = Effort {
-        characters: 256,
-        secs: 60.0,
-        coordinates: 11,
-        characters_each: 32,
-        drops: 1000,
-        pushed: 64,
-    };
+    pub const FULL: Effort =
+        Effort { characters: 256, secs: 60.0, coordinates: 11, characters_each: 32, drops: 1000, pushed: 64 };
 
     /// Less than a minute on two idle cores, for a first look.
     pub const QUICK: Effort =

@@ -110,8 +110,7 @@ pub fn pose_error(motion: &[CharacterState], clip: &[CharacterState]) -> f32 {
     if motion.is_empty() || clip.is_empty() {
         return f32::NAN;
     }
-    let (a, b): (Vec<_>, Vec<_>) =
-        (motion.iter().map(shape).collect(), clip.iter().map(shape).collect());
+    let (a, b): (Vec<_>, Vec<_>) = (motion.iter().map(shape).collect(), clip.iter().map(shape).collect());
     let cost = |i: usize, j: usize| {
         a[i].iter().zip(&b[j]).map(|(p, q): (&Vec3, &Vec3)| p.distance(*q)).sum::<f32>() / a[i].len() as f32
     };

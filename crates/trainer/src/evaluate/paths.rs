@@ -68,8 +68,7 @@ pub fn measure_sweep(
     (characters, secs): (usize, f32),
 ) -> f32 {
     let each = (0..characters).into_par_iter();
-    let walked: Vec<Walked> =
-        each.map(|i| walk(model, pack, path, mode, None, (secs, i as u64))).collect();
+    let walked: Vec<Walked> = each.map(|i| walk(model, pack, path, mode, None, (secs, i as u64))).collect();
     falls_per_minute(&walked)
 }
 

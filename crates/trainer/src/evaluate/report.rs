@@ -9,8 +9,8 @@ use policy_core::{BlendMode, CharacterPack, CharacterState};
 use serde::Serialize;
 
 use super::{
-    Effort, MotionReport, UprightReport, measure_coordinates, measure_get_up, measure_push, measure_roll, measure_sweep,
-    measure_upright, pose_error, watch,
+    Effort, MotionReport, UprightReport, measure_coordinates, measure_get_up, measure_push, measure_roll,
+    measure_sweep, measure_upright, pose_error, watch,
 };
 
 /// All measures of a pack.

@@ -4,7 +4,9 @@ use std::sync::Arc;
 
 use glam::Vec2;
 use physics_bridge::{Model, Pose, QPOS_LEN, QVEL_LEN};
-use policy_core::{Body, CharacterPack, Command, DOF_COUNT, Goal, JointTargets, SkillEnd, TARGET_RANGE_METRES};
+use policy_core::{
+    Body, CharacterPack, Command, DOF_COUNT, Goal, JointTargets, SkillEnd, TARGET_RANGE_METRES,
+};
 use rayon::prelude::*;
 
 use super::subject::{SETTLE_SECS, Subject};
@@ -49,12 +51,7 @@ fn gets_up(model: &Model, pack: &Arc<CharacterPack>, skill: usize, seed: u64) ->
 
 /// Drops the character in a random attitude, limp, and lets it come to rest for two seconds.
 fn drop_limp(subject: &mut Subject, rng: &mut Rng) -> bool {
-    let turn = glam::Quat::from_euler(
-        glam::EulerRot::ZYX,
-        rng.angle(),
-        rng.range(-1.6, 1.6),
-        rng.angle(),
-    );
+    let turn = glam::Quat::from_euler(glam::EulerRot::ZYX, rng.angle(), rng.range(-1.6, 1.6), rng.angle());
     let mut pose = Pose { qpos: [0.0; QPOS_LEN], qvel: [0.0; QVEL_LEN] };
     pose.qpos[2] = 0.8;
     pose.qpos[3..7].copy_from_slice(&[turn.w, turn.x, turn.y, turn.z].map(f64::from));

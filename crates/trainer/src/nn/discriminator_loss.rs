@@ -116,8 +116,7 @@ impl DiscriminatorPass {
     /// Adds the penalty's gradient by the weights; `input_gradient` holds the penalty's gradient by `g`.
     fn penalty_gradient(&mut self, network: &Network, rows: usize, gradient: &mut [f32]) {
         let layers = network.layers();
-        for l in 0..layers.len() - 1 {
-            let layer = &layers[l];
+        for (l, layer) in layers.iter().enumerate().take(layers.len() - 1) {
             let (lower, upper) = self.chain_delta.split_at_mut(l);
             let from = lower.last().map_or(&self.input_gradient[..], |d| &d[..]);
             let from = &from[..rows * layer.inputs];

@@ -40,7 +40,7 @@ fn loss_and_gradient_agree_with_finite_differences() {
     let found = sums.cross_entropy + 0.7 * sums.squared_gradient;
     assert!((expected - found).abs() < 0.02 * expected, "{expected} {found}");
     let mut bad = 0;
-    for i in 0..network.parameters.len() {
+    for (i, found) in gradient.iter().enumerate() {
         let (kept, h) = (network.parameters[i], 2e-3);
         network.parameters[i] = kept + h;
         let up = loss(&network, &input, 0.7);
@@ -48,7 +48,7 @@ fn loss_and_gradient_agree_with_finite_differences() {
         let low = loss(&network, &input, 0.7);
         network.parameters[i] = kept;
         let difference = (up - low) / (2.0 * f64::from(h));
-        bad += usize::from((difference - f64::from(gradient[i])).abs() > 0.05 * (1.0 + difference.abs()));
+        bad += usize::from((difference - f64::from(*found)).abs() > 0.05 * (1.0 + difference.abs()));
     }
     // Kinks inside a difference spoil single entries; a wrong term would spoil most.
     assert!(bad * 20 <= network.parameters.len(), "{bad} of {} entries", network.parameters.len());

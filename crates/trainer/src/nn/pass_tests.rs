@@ -26,7 +26,7 @@ fn check(line_of: impl Fn() -> Option<(Network, Vec<f32>)>) {
     pass.output_and_delta(8).1.copy_from_slice(&c);
     pass.backward(&network, line, &input, &mut gradient);
     let mut bad = 0;
-    for i in 0..network.parameters.len() {
+    for (i, found) in gradient.iter().enumerate() {
         let (kept, h) = (network.parameters[i], 1e-3);
         network.parameters[i] = kept + h;
         let up = loss(&network, line, &input, &c);
@@ -35,7 +35,7 @@ fn check(line_of: impl Fn() -> Option<(Network, Vec<f32>)>) {
         network.parameters[i] = kept;
         let difference = (up - low) / (2.0 * f64::from(h));
         // A kink of a ReLU inside the difference spoils single entries.
-        bad += usize::from((difference - f64::from(gradient[i])).abs() > 1e-2 * (1.0 + difference.abs()));
+        bad += usize::from((difference - f64::from(*found)).abs() > 1e-2 * (1.0 + difference.abs()));
     }
     assert!(bad <= 2, "{bad} of {} entries", network.parameters.len());
 }

@@ -33,16 +33,18 @@ impl BatchEvaluator {
         assert_eq!(out.len(), rows * outputs, "outputs of a batch");
         let per_lane = rows.div_ceil(self.lanes.len()).max(1);
         let lanes = self.lanes.par_iter_mut().zip(input.par_chunks(per_lane * inputs));
-        lanes.zip(out.par_chunks_mut(per_lane * outputs)).enumerate().for_each(|(lane, ((pass, input), out))| {
-            let blocks = input.chunks(block * inputs).zip(out.chunks_mut(block * outputs));
-            for (i, (input, out)) in blocks.enumerate() {
-                let first = lane * per_lane + i * block;
-                let rows = input.len() / inputs;
-                let line = line.map(|l| Line { parent: l.parent, blend: &l.blend[first..first + rows] });
-                pass.forward(network, line, input);
-                out.copy_from_slice(pass.output(rows));
-            }
-        });
+        lanes.zip(out.par_chunks_mut(per_lane * outputs)).enumerate().for_each(
+            |(lane, ((pass, input), out))| {
+                let blocks = input.chunks(block * inputs).zip(out.chunks_mut(block * outputs));
+                for (i, (input, out)) in blocks.enumerate() {
+                    let first = lane * per_lane + i * block;
+                    let rows = input.len() / inputs;
+                    let line = line.map(|l| Line { parent: l.parent, blend: &l.blend[first..first + rows] });
+                    pass.forward(network, line, input);
+                    out.copy_from_slice(pass.output(rows));
+                }
+            },
+        );
     }
 }
 
@@ -80,7 +82,13 @@ impl Learner {
     /// # Panics
     /// When the critic doesn't take one input more than the actor, or the parent has other sizes than the actor.
     #[must_use]
-    pub fn new(config: PpoConfig, actor: Network, critic: Network, parent: Option<Network>, rng: Rng) -> Self {
+    pub fn new(
+        config: PpoConfig,
+        actor: Network,
+        critic: Network,
+        parent: Option<Network>,
+        rng: Rng,
+    ) -> Self {
         assert_eq!(critic.inputs(), actor.inputs() + 1, "inputs of the critic");
         assert!(parent.as_ref().is_none_or(|p| p.sizes() == actor.sizes()), "sizes of the parent");
         let lane = Lane::new(&actor, &critic, config.minibatch.div_ceil(Lane::COUNT));

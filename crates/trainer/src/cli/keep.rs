@@ -1,0 +1,30 @@
+//! `trainer keep`: slim checkpoints of runs and the normaliser, for others to go on from.
+
+use std::path::Path;
+
+use anyhow::{Context, Result};
+use clap::Args;
+use trainer::checkpoint::Checkpoint;
+use trainer::env::Normalisers;
+use trainer::normaliser_file;
+
+/// Arguments of the verb.
+#[derive(Args)]
+pub(crate) struct Arguments {
+    /// Skills to keep.
+    #[arg(required = true)]
+    skills: Vec<String>,
+}
+
+/// Keeps.
+pub(crate) fn run(normalisers: &Normalisers, runs: &Path, kept: &Path, arguments: &Arguments) -> Result<()> {
+    std::fs::create_dir_all(kept).with_context(|| format!("cannot make {}", kept.display()))?;
+    for skill in &arguments.skills {
+        let checkpoint = Checkpoint::load(&runs.join(skill).join("checkpoint.safetensors"))?;
+        let path = kept.join(format!("{skill}.safetensors"));
+        checkpoint.slim().save(&path)?;
+        println!("wrote {}", path.display());
+    }
+    normaliser_file::save(&kept.join("normaliser.safetensors"), normalisers)?;
+    Ok(())
+}

@@ -1,0 +1,189 @@
+//! Where recipes, runs, clips and kept checkpoints are, and how a run is made ready from them.
+
+use std::collections::BTreeMap;
+use std::path::{Path, PathBuf};
+
+use anyhow::{Context, Result, bail};
+use physics_bridge::Model;
+
+use crate::checkpoint::{Checkpoint, write_atomically};
+use crate::clip::{ClipError, ClipFolder};
+use crate::env::{Demonstrations, Normalisers};
+use crate::recipe::Recipe;
+use crate::run::{METRICS, Run};
+use crate::training::{Parent, Training};
+
+/// Where everything a run reads and writes is.
+#[derive(Clone, Debug)]
+pub struct Workplace {
+    /// Folder of recipes.
+    pub recipes: PathBuf,
+    /// Folder of runs.
+    pub runs: PathBuf,
+    /// Folder of slim checkpoints that came with the project: what a run goes on from when it has none of its own.
+    pub kept: PathBuf,
+    /// Folder of clips.
+    pub clips: ClipFolder,
+    /// The character.
+    pub model: Model,
+    /// The graph's normalisers.
+    pub normalisers: Normalisers,
+}
+
+impl Workplace {
+    /// The recipe of a skill.
+    ///
+    /// # Errors
+    /// When there is none or it can't be used.
+    pub fn recipe(&self, skill: &str) -> Result<Recipe> {
+        let path = self.recipes.join(format!("{skill}.toml"));
+        let recipe = Recipe::load(&path)?;
+        if recipe.skill != skill {
+            bail!("{}: expected the recipe of {skill}, found that of {}", path.display(), recipe.skill);
+        }
+        Ok(recipe)
+    }
+
+    /// All recipes of the folder, parents before children.
+    ///
+    /// # Errors
+    /// When a recipe can't be used, or a parent has none.
+    pub fn recipes_in_order(&self) -> Result<Vec<Recipe>> {
+        let mut left = BTreeMap::new();
+        let folder = std::fs::read_dir(&self.recipes)
+            .with_context(|| format!("cannot read {}", self.recipes.display()))?;
+        for entry in folder {
+            let path = entry?.path();
+            if path.extension().is_some_and(|e| e == "toml") {
+                let recipe = Recipe::load(&path)?;
+                left.insert(recipe.skill.clone(), recipe);
+            }
+        }
+        let mut ordered: Vec<Recipe> = Vec::new();
+        while !left.is_empty() {
+            let ready = |r: &Recipe| r.parent.as_ref().is_none_or(|p| ordered.iter().any(|o| o.skill == *p));
+            let Some(skill) = left.values().find(|r| ready(r)).map(|r| r.skill.clone()) else {
+                let names: Vec<_> = left.keys().cloned().collect();
+                bail!(
+                    "expected every parent to have a recipe, and no circle; found none for {}",
+                    names.join(", ")
+                );
+            };
+            ordered.extend(left.remove(&skill));
+        }
+        Ok(ordered)
+    }
+
+    /// Path of a skill's checkpoint.
+    #[must_use]
+    pub fn checkpoint(&self, skill: &str) -> PathBuf {
+        self.runs.join(skill).join("checkpoint.safetensors")
+    }
+
+    /// Path of the checkpoint to start from: the run's own, else the kept one.
+    #[must_use]
+    pub fn newest(&self, skill: &str) -> PathBuf {
+        let (own, kept) = (self.checkpoint(skill), self.kept.join(format!("{skill}.safetensors")));
+        if !own.exists() && kept.exists() { kept } else { own }
+    }
+
+    /// The clips of a recipe, ready to learn from.
+    ///
+    /// # Errors
+    /// When a clip is missing or wrong.
+    pub fn demonstrations(&self, recipe: &Recipe) -> Result<Demonstrations> {
+        let mut clips = Vec::new();
+        for clip in &recipe.clips {
+            clips.push((self.clips.load(&clip.name)?, clip.share));
+        }
+        Ok(Demonstrations::from_clips(&clips, &self.model, &self.normalisers.frame)?)
+    }
+
+    fn parent(&self, recipe: &Recipe) -> Result<Option<Parent>> {
+        let Some(skill) = &recipe.parent else { return Ok(None) };
+        let path = self.newest(skill);
+        let checkpoint = Checkpoint::load(&path)
+            .with_context(|| format!("{} starts from {skill}, which is not trained yet", recipe.skill))?;
+        let network = |role: &str| checkpoint.network(role, &path).map(|t| t.network.clone());
+        Ok(Some(Parent {
+            actor: network("actor")?,
+            critic: network("critic")?,
+            discriminator: network("discriminator")?,
+            demonstrations: self.demonstrations(&self.recipe(skill)?)?,
+        }))
+    }
+
+    /// Makes a run ready: from its checkpoint with `resume` and if there is one, else from the start.
+    ///
+    /// # Errors
+    /// When something that it needs is missing or wrong.
+    pub fn prepare(&self, recipe: Recipe, seed: u64, resume: bool) -> Result<Run> {
+        let folder = self.runs.join(&recipe.skill);
+        std::fs::create_dir_all(&folder).with_context(|| format!("cannot make {}", folder.display()))?;
+        let path = self.newest(&recipe.skill);
+        let earlier = if resume && path.exists() { Some(Checkpoint::load(&path)?) } else { None };
+        let demonstrations = self.demonstrations(&recipe)?;
+        let parent = self.parent(&recipe)?;
+        let starts = match &recipe.environment.start.clips[..] {
+            [] => parent.as_ref().map(|p| p.demonstrations.clone()),
+            names => {
+                let clips = names.iter().map(|n| Ok((self.clips.load(n)?, 1.0)));
+                let clips = clips.collect::<Result<Vec<_>, ClipError>>()?;
+                Some(Demonstrations::from_clips(&clips, &self.model, &self.normalisers.frame)?)
+            }
+        };
+        // A resumed run must not meet the same episodes again.
+        let seed_now = seed.wrapping_add(earlier.as_ref().map_or(0, |c| c.progress.samples));
+        let text = toml::to_string(&recipe).context("cannot write the recipe")?;
+        let mut training = Training::new(
+            recipe,
+            &self.model,
+            self.normalisers.clone(),
+            (demonstrations, starts),
+            parent,
+            seed_now,
+        );
+        let metrics = folder.join("metrics.csv");
+        if earlier.is_none() || !metrics.exists() {
+            write_atomically(&folder.join("seed.txt"), format!("{seed}\n").as_bytes())?;
+            write_atomically(&metrics, format!("{METRICS}\n").as_bytes())?;
+        }
+        write_atomically(&folder.join("recipe.toml"), text.as_bytes())?;
+        let secs = match earlier {
+            Some(checkpoint) => restore(&mut training, &checkpoint, &path)?,
+            None => 0.0,
+        };
+        Ok(Run::new(training, folder, seed, secs))
+    }
+}
+
+/// Puts a checkpoint's networks into a training; returns the seconds spent before.
+fn restore(training: &mut Training, checkpoint: &Checkpoint, path: &Path) -> Result<f64> {
+    let mut targets = vec![
+        ("actor", &mut training.learner.actor, &mut training.learner.actor_adam),
+        ("critic", &mut training.learner.critic, &mut training.learner.critic_adam),
+        ("discriminator", &mut training.discriminator.network, &mut training.discriminator.adam),
+    ];
+    if let Some(parent) = &mut training.parent_discriminator
+        && checkpoint.networks.contains_key("parent_discriminator")
+    {
+        targets.push(("parent_discriminator", &mut parent.network, &mut parent.adam));
+    }
+    for (role, network, adam) in targets {
+        let trained = checkpoint.network(role, path)?;
+        if trained.network.sizes() != network.sizes() {
+            bail!(
+                "{}: expected a {role} of sizes {:?}, found {:?}",
+                path.display(),
+                network.sizes(),
+                trained.network.sizes()
+            );
+        }
+        network.clone_from(&trained.network);
+        adam.clone_from(&trained.adam);
+    }
+    training.samples = checkpoint.progress.samples;
+    training.learner.actor_rate = checkpoint.progress.actor_rate;
+    training.learner.rng = checkpoint.progress.rng;
+    Ok(checkpoint.progress.secs)
+}
