@@ -51,7 +51,7 @@ impl App {
             }
             ViewerCommand::Scrub(age) => self.scrub(age),
             ViewerCommand::Speed(speed) if speed.is_finite() => {
-                self.clock.speed = speed.clamp(1.0 / 32.0, 8.0)
+                self.clock.speed = speed.clamp(1.0 / 32.0, 8.0);
             }
             ViewerCommand::Reset => self.restart(),
             ViewerCommand::Settings(settings) => {

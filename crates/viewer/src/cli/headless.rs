@@ -73,7 +73,7 @@ impl<'a> Headless<'a> {
             self.keep(&blowup)?;
             self.app.sim.stand_up(blowup.character);
         }
-        if self.demo.trace && tick % 15 == 0 {
+        if self.demo.trace && tick.is_multiple_of(15) {
             super::trace(&self.app);
         }
         let mut last = 0.0;

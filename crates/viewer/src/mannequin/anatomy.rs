@@ -46,7 +46,7 @@ pub(super) struct Piece {
     pub(super) shapes: Vec<Shape>,
     /// Fillet between its shapes.
     pub(super) fillet: f32,
-    /// Edge of a mesh cell in the finest mesh.
+    /// Edge of a mesh cell at coarseness 1.
     pub(super) cell: f32,
     /// The piece is cut off below this height of its body frame.
     pub(super) floor: f32,

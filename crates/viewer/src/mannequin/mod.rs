@@ -10,13 +10,13 @@ mod surface_nets;
 
 pub use anatomy::{REST_OFFSETS, rest_positions};
 
-/// How much coarser the mesh for crowds is.
-const CROWD_COARSENESS: f32 = 2.6;
+/// Cells of the mesh for few characters and of that for crowds, in units of the sizes in `anatomy`.
+const COARSENESS: [f32; 2] = [1.45, 2.7];
 
-/// Bytes of the mannequin as glTF 2.0 binary, about 1 MB. Takes about a second.
+/// Bytes of the mannequin as glTF 2.0 binary, below 1 MB. Takes about a second.
 #[must_use]
 pub fn generate() -> Vec<u8> {
     let sculpture = sculpt::Sculpture::new();
-    let levels = [1.0, CROWD_COARSENESS].map(|c| (sculpture.shells(c), sculpture.suit(c)));
+    let levels = COARSENESS.map(|c| (sculpture.shells(c), sculpture.suit(c)));
     glb::write(&levels)
 }

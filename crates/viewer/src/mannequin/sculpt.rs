@@ -11,7 +11,7 @@ use super::surface_nets;
 const BEND: f32 = 0.07;
 /// Fillet between neighbouring bodies of the suit.
 const SUIT_FILLET: f32 = 0.05;
-/// Edge of a mesh cell of the suit in the finest mesh.
+/// Edge of a mesh cell of the suit at coarseness 1.
 const SUIT_CELL: f32 = 0.0105;
 
 /// A vertex in the rest pose, pelvis at the origin, z up.
@@ -45,7 +45,7 @@ impl Sculpture {
         Self { rest: anatomy::rest_positions(), shells: anatomy::shells(), suit: anatomy::suit() }
     }
 
-    /// Shells with cells `coarseness` times the finest.
+    /// Shells with cells `coarseness` times the size in `anatomy`.
     pub(super) fn shells(&self, coarseness: f32) -> Part {
         let mut part = Part::default();
         self.pieces(false, coarseness, &mut part);

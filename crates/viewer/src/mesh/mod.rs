@@ -8,6 +8,7 @@
 mod binding;
 mod error;
 mod load;
+mod primitive;
 mod read;
 
 use std::path::Path;

@@ -95,7 +95,7 @@ impl SunView {
     fn fit(scene: &Scene, config: &RenderConfig) -> Self {
         let to_sun = config.light.to_sun.normalize();
         let near = |p: &&Figure| p.positions[0].distance(scene.focus) < config.shadow_reach_m;
-        let shown = if scene.hide_figures { &[][..] } else { &scene.figures[..] };
+        let shown = &scene.figures;
         let far = shown.iter().filter(near).map(|f| f.positions[0].distance(scene.focus)).fold(0.0, f32::max);
         // Steps of a fifth, so that the size does not change every frame.
         let radius =

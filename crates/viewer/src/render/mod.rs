@@ -58,6 +58,7 @@ struct Counts {
     contacts: u32,
     markers: [std::ops::Range<u32>; 5],
     ribbons: u32,
+    hide_figures: bool,
 }
 
 impl Renderer {
@@ -152,7 +153,7 @@ impl Renderer {
         let aspect = width as f32 / height.max(1) as f32;
         queue.write_buffer(&self.frame, 0, bytemuck::bytes_of(&FrameData::new(scene, aspect, &self.config)));
 
-        let figures = if scene.hide_figures { &[][..] } else { &scene.figures[..] };
+        let figures = &scene.figures;
         let joints = self.mesh.joints.len();
         let mut palette = Vec::with_capacity(figures.len() * joints);
         let mut instances = Vec::with_capacity(figures.len());
@@ -184,6 +185,7 @@ impl Renderer {
             contacts: patches.len() as u32,
             markers,
             ribbons: scene.ribbons.len() as u32,
+            hide_figures: scene.hide_figures,
         }
     }
 
@@ -203,7 +205,8 @@ impl Renderer {
         if counts.figures == 0 {
             return;
         }
-        let level = self.level(counts.figures);
+        // A shadow's edge is softer than the coarse mesh is coarse.
+        let level = &self.mesh_buffers.levels[self.mesh_buffers.levels.len() - 1];
         pass.set_pipeline(&self.pipelines.skinned_shadow);
         pass.set_bind_group(0, &self.frame_group, &[]);
         pass.set_bind_group(2, &self.figures_group, &[]);
@@ -254,7 +257,7 @@ impl Renderer {
 
     /// One draw call for each material, however many figures there are.
     fn draw_figures(&self, pass: &mut wgpu::RenderPass<'_>, counts: &Counts) {
-        if counts.figures == 0 {
+        if counts.figures == 0 || counts.hide_figures {
             return;
         }
         let level = self.level(counts.figures);

@@ -92,7 +92,7 @@ pub struct Scene {
     pub focus: Vec3,
     /// Characters.
     pub figures: Vec<Figure>,
-    /// Hides the figures (their shadows too), to see the collision shapes alone.
+    /// Hides the figures but not their shadows, to see the collision shapes alone.
     pub hide_figures: bool,
     /// Solids.
     pub markers: Vec<Marker>,

@@ -37,7 +37,7 @@ fn fs_main(in: Varying) -> @location(0) vec4f {
     let n_sun = max(dot(normal, frame.to_sun.xyz), 0.0);
     let direct = frame.sun.rgb * n_sun / PI * sunlight(in.position, normal);
     var light = colour * (direct + ambient(normal));
-    let grazing = pow(1.0 - clamp(dot(normal, away / reach), 0.0, 1.0), 5.0);
+    let grazing = power5(1.0 - clamp(dot(normal, away / reach), 0.0, 1.0));
     light += frame.horizon.rgb * grazing * 0.22;
     let haze = smoothstep(frame.fade.x, frame.fade.y, reach);
     return vec4f(to_screen(mix(light, frame.horizon.rgb, haze)), 1.0);

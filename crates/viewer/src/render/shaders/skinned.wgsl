@@ -43,17 +43,22 @@ struct Rows {
     z: vec4f,
 }
 
+fn joint(index: u32, share: f32, rows: Rows) -> Rows {
+    let row = index * 3u;
+    return Rows(
+        rows.x + palette[row] * share,
+        rows.y + palette[row + 1u] * share,
+        rows.z + palette[row + 2u] * share,
+    );
+}
+
 fn bend(vertex: Vertex, instance: u32) -> Rows {
-    let first = instances[instance].first;
-    var rows = Rows(vec4f(), vec4f(), vec4f());
-    for (var i = 0; i < 4; i++) {
-        let share = vertex.share[i];
-        if share > 0.0 {
-            let row = (first + vertex.joints[i]) * 3u;
-            rows.x += palette[row] * share;
-            rows.y += palette[row + 1u] * share;
-            rows.z += palette[row + 2u] * share;
-        }
+    let index = instances[instance].first + vertex.joints;
+    var rows = joint(index.x, vertex.share.x, Rows(vec4f(), vec4f(), vec4f()));
+    if vertex.share.x < 1.0 {
+        rows = joint(index.y, vertex.share.y, rows);
+        rows = joint(index.z, vertex.share.z, rows);
+        rows = joint(index.w, vertex.share.w, rows);
     }
     return rows;
 }
