@@ -15,6 +15,7 @@ pub mod ppo;
 pub mod recipe;
 mod rng;
 pub mod run;
+pub mod strip;
 pub mod training;
 pub mod workplace;
 

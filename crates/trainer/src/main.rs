@@ -51,6 +51,8 @@ enum Verb {
     Compare(cli::compare::Arguments),
     /// Principal components of visited states and of parameters.
     Pca(cli::pca::Arguments),
+    /// Draws strips of each skill beside its clip.
+    Strip(cli::strip::Arguments),
     /// Fits a clip, tells how well it fits, and writes its poses.
     View(cli::view::Arguments),
 }
@@ -70,6 +72,9 @@ fn main() -> Result<()> {
         }
         Verb::Compare(verb) => cli::compare::run(verb),
         Verb::Pca(verb) => cli::pca::run(&arguments.model()?, verb),
+        Verb::Strip(verb) => {
+            cli::strip::run(&arguments.model()?, &arguments.recipes, &arguments.clips()?, verb)
+        }
         Verb::View(verb) => cli::view::run(&arguments.model()?, || arguments.clips(), verb),
         Verb::Normaliser(verb) => {
             let (model, clips) = (arguments.model()?, arguments.clips()?);

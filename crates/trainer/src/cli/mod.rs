@@ -6,5 +6,6 @@ pub(crate) mod keep;
 pub(crate) mod normaliser;
 pub(crate) mod pack;
 pub(crate) mod pca;
+pub(crate) mod strip;
 pub(crate) mod train;
 pub(crate) mod view;

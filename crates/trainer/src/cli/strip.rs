@@ -1,0 +1,62 @@
+//! `trainer strip`: each skill of a pack beside its clip, as strips of figures.
+
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
+use anyhow::{Context, Result};
+use clap::Args;
+use physics_bridge::Model;
+use policy_core::{CharacterPack, CharacterState};
+use trainer::checkpoint::write_atomically;
+use trainer::clip::ClipFolder;
+use trainer::evaluate::{clip_states, pose_error, watch};
+use trainer::recipe::Recipe;
+use trainer::strip::{Row, draw};
+
+/// Arguments of the verb.
+#[derive(Args)]
+pub(crate) struct Arguments {
+    /// The pack.
+    pack: PathBuf,
+    /// Folder for one SVG a skill.
+    #[arg(long, default_value = "docs/motions")]
+    out: PathBuf,
+    /// Figures of a strip.
+    #[arg(long, default_value_t = 13)]
+    figures: usize,
+    /// Control ticks from figure to figure.
+    #[arg(long, default_value_t = 3)]
+    stride: usize,
+}
+
+/// Draws.
+pub(crate) fn run(model: &Model, recipes: &Path, clips: &ClipFolder, a: &Arguments) -> Result<()> {
+    let bytes = std::fs::read(&a.pack).with_context(|| format!("cannot read {}", a.pack.display()))?;
+    let pack = Arc::new(CharacterPack::from_bytes(&bytes).with_context(|| a.pack.display().to_string())?);
+    std::fs::create_dir_all(&a.out).with_context(|| format!("cannot make {}", a.out.display()))?;
+    let span = a.figures.max(1) * a.stride.max(1);
+    for (index, node) in pack.graph().nodes().iter().enumerate().filter(|(_, n)| n.speed_mps.is_some()) {
+        let recipe = Recipe::load(&recipes.join(format!("{}.toml", node.name)))?;
+        let name = &recipe.clips[0].name;
+        let clip = clip_states(model, &clips.load(name)?)?;
+        let motion = watch(model, &pack, index);
+        if motion.len() < span {
+            println!("{}: falls before it can be drawn", node.name);
+            continue;
+        }
+        let clip: Vec<CharacterState> = clip.iter().cycle().take(span).copied().collect();
+        // The stretch of the motion that is in step with the clip.
+        let at = |start: usize| pose_error(&motion[start..start + 1], &clip[..1]);
+        let start = (0..=motion.len() - span).min_by(|x, y| at(*x).total_cmp(&at(*y))).unwrap_or(0);
+        let figures = |states: &[CharacterState]| states.iter().step_by(a.stride.max(1)).copied().collect();
+        let rows = [
+            Row { caption: format!("clip {name}"), states: figures(&clip) },
+            Row { caption: format!("policy {}", node.name), states: figures(&motion[start..start + span]) },
+        ];
+        let path = a.out.join(format!("{}.svg", node.name));
+        write_atomically(&path, draw(&rows).as_bytes())
+            .with_context(|| format!("cannot write {}", path.display()))?;
+        println!("wrote {}", path.display());
+    }
+    Ok(())
+}
