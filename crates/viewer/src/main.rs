@@ -1,11 +1,22 @@
 //! `policy-space`: the demo in a window, without one, and its benchmarks.
 
+use std::process::ExitCode;
+
 use clap::Parser as _;
 use viewer::cli::open::open;
 use viewer::cli::{Cli, Task, bench, headless};
 
-fn main() -> anyhow::Result<()> {
-    let cli = Cli::parse();
+fn main() -> ExitCode {
+    match run(&Cli::parse()) {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(error) => {
+            eprintln!("error: {error:#}");
+            ExitCode::FAILURE
+        }
+    }
+}
+
+fn run(cli: &Cli) -> anyhow::Result<()> {
     match cli.command {
         Some(Task::BenchCrowd(choices)) => bench::crowd(choices),
         Some(Task::BenchFrame(choices)) => bench::frame(choices),

@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use serde::{Deserialize, Serialize};
 
-use super::Preset;
+use super::{PanelKind, Preset, Side};
 use crate::camera::CameraMode;
 use crate::stage::Shown;
 
@@ -12,66 +12,6 @@ use crate::stage::Shown;
 pub const LAYOUT_VERSION: u32 = 1;
 /// Largest file that is read, bytes.
 const MOST_BYTES: u64 = 1 << 20;
-
-/// A panel.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
-#[expect(missing_docs, reason = "the names say it all")]
-pub enum PanelKind {
-    Paths,
-    Graph,
-    Layers,
-    BlendMode,
-    Skills,
-    Pad,
-    Analysis,
-    Physics,
-    View,
-    Profiler,
-    Record,
-}
-
-impl PanelKind {
-    /// All panels, in the order of the bar.
-    pub const ALL: [PanelKind; 11] = [
-        PanelKind::Paths,
-        PanelKind::Graph,
-        PanelKind::Layers,
-        PanelKind::BlendMode,
-        PanelKind::Skills,
-        PanelKind::Pad,
-        PanelKind::Analysis,
-        PanelKind::Physics,
-        PanelKind::View,
-        PanelKind::Profiler,
-        PanelKind::Record,
-    ];
-
-    /// Title.
-    #[must_use]
-    pub const fn title(self) -> &'static str {
-        match self {
-            PanelKind::Paths => "Paths",
-            PanelKind::Graph => "Graph",
-            PanelKind::Layers => "Layers",
-            PanelKind::BlendMode => "Blend mode",
-            PanelKind::Skills => "Skills",
-            PanelKind::Pad => "Pad",
-            PanelKind::Analysis => "Analysis",
-            PanelKind::Physics => "Physics",
-            PanelKind::View => "View",
-            PanelKind::Profiler => "Profiler",
-            PanelKind::Record => "Record",
-        }
-    }
-}
-
-/// Where a panel is.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
-#[expect(missing_docs, reason = "the names say it all")]
-pub enum Side {
-    Left,
-    Right,
-}
 
 /// What is remembered.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]

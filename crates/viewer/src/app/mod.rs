@@ -9,6 +9,7 @@ mod command;
 mod keys;
 mod layers;
 mod layout;
+mod panel_kind;
 mod pick;
 mod plots;
 
@@ -27,7 +28,8 @@ pub use clock::Clock;
 pub use command::{Record, ViewerCommand};
 pub use keys::{KEYS, Keys, PAD};
 pub use layers::{Layers, Preset};
-pub use layout::{LAYOUT_VERSION, Layout, LayoutError, PanelKind, Side};
+pub use layout::{LAYOUT_VERSION, Layout, LayoutError};
+pub use panel_kind::{PanelKind, Side};
 pub use pick::Grab;
 pub use plots::{Plots, Series};
 

@@ -55,7 +55,7 @@ impl<'a> Headless<'a> {
         if let Some(complaint) = app.notice.take() {
             bail!("{complaint}");
         }
-        if demo.panels {
+        if demo.panels.is_some() {
             app.analysis = Analysis::of(app.sim.pack());
         }
         let painter = match &demo.frames {
@@ -160,7 +160,7 @@ impl Painter {
         Ok(Self {
             desk: Desk::new(&gpu, OffScreen::FORMAT, mesh),
             size: demo.size,
-            panels: demo.panels,
+            panels: demo.panels.is_some(),
             around: demo.view_angle.to_radians(),
             folder: folder.to_owned(),
             drawn: 0,

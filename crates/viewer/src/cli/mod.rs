@@ -12,7 +12,7 @@ use std::path::PathBuf;
 use clap::{Args, Parser, Subcommand};
 use policy_core::BlendMode;
 
-use crate::app::App;
+use crate::app::{App, PanelKind};
 use crate::sim::{Ground, MAX_CHARACTERS};
 
 /// Steer a physics-based humanoid by blending the parameters of tiny policies.
@@ -82,9 +82,9 @@ pub struct Demo {
     /// Size of the pictures or of the window, such as 1280x720.
     #[arg(long, default_value = "1280x720", value_name = "WxH", value_parser = size)]
     pub size: [u32; 2],
-    /// Draw the panels into the pictures.
-    #[arg(long, requires = "frames")]
-    pub panels: bool,
+    /// Draw the panels into the pictures, or those of a list such as --panels=paths,analysis.
+    #[arg(long, requires = "frames", value_name = "LIST", num_args = 0..=1, require_equals = true, default_missing_value = "", value_parser = panels)]
+    pub panels: Option<PanelList>,
     /// Degrees by which pictures are taken from another side than the pad steers from.
     #[arg(
         long,
@@ -166,6 +166,22 @@ fn seconds(text: &str) -> Result<f64, String> {
     }
 }
 
+/// Panels to open; none named means those that open by themselves.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct PanelList(pub Vec<PanelKind>);
+
+fn panels(text: &str) -> Result<PanelList, String> {
+    let expected = || {
+        let titles = PanelKind::ALL.map(|kind| kind.title().to_lowercase()).join(",");
+        format!("expected some of {titles}")
+    };
+    let named = text.split(',').filter(|title| !title.is_empty());
+    named
+        .map(|title| PanelKind::from_title(title).ok_or_else(expected))
+        .collect::<Result<_, _>>()
+        .map(PanelList)
+}
+
 fn distance(text: &str) -> Result<f32, String> {
     match text.parse() {
         Ok(metres) if (1.0..=60.0).contains(&metres) => Ok(metres),
@@ -207,6 +223,7 @@ mod tests {
         assert!(error(&["--characters", "0"]).contains("1 to 200"));
         assert!(error(&["--headless", "--seconds", "nan"]).contains("up to 3600"));
         assert!(error(&["--frobnicate"]).contains("--frobnicate"));
+        assert!(error(&["--headless", "--frames", "x", "--panels=stove"]).contains("paths,graph"));
         assert!(error(&["--report", "x.json"]).contains("--headless"));
     }
 

@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use super::{Demo, load};
-use crate::app::{App, Layout};
+use crate::app::{App, Layout, Side};
 use crate::assets;
 use crate::mesh::SkinnedMesh;
 use crate::sim::{SimConfig, Simulation};
@@ -26,7 +26,7 @@ pub struct Opened {
 pub fn open(demo: &Demo) -> anyhow::Result<Opened> {
     let mut notices = Vec::new();
     let home = if demo.no_layout || demo.headless { None } else { Layout::home() };
-    let layout = match home.as_deref().map(Layout::load) {
+    let mut layout = match home.as_deref().map(Layout::load) {
         Some(Ok(layout)) => layout,
         Some(Err(error)) => {
             notices.push(error.to_string());
@@ -34,6 +34,11 @@ pub fn open(demo: &Demo) -> anyhow::Result<Opened> {
         }
         None => Layout::default(),
     };
+    if let Some(list) = demo.panels.as_ref().filter(|list| !list.0.is_empty()) {
+        layout.open.clear();
+        // In turn to the left and to the right.
+        layout.open.extend(list.0.iter().copied().zip([Side::Left, Side::Right].into_iter().cycle()));
+    }
     let (mesh, complaint) = load::mesh(demo.mesh.as_deref())?;
     notices.extend(complaint);
     let pack = load::pack(demo.pack.as_deref())?;

@@ -13,12 +13,13 @@ mod pipelines;
 mod scene;
 mod solids;
 mod targets;
+mod upload;
 
 use crate::gpu::Gpu;
 use crate::mesh::SkinnedMesh;
 use buffers::{Growing, fixed};
 pub use config::{Light, RenderConfig};
-use gpu_data::{ContactData, FrameData, InstanceData, MarkerData, contacts};
+use gpu_data::FrameData;
 use model::MeshBuffers;
 pub use off_screen::OffScreen;
 pub use pipelines::SHADERS;
@@ -26,6 +27,7 @@ use pipelines::{Layouts, Pipelines};
 pub use scene::{Figure, Marker, RibbonVertex, Scene, Solid, View};
 pub use solids::{GroundGrid, SolidVertex};
 use targets::Targets;
+use upload::Counts;
 
 /// Draws scenes. See the module.
 #[derive(Debug)]
@@ -50,15 +52,6 @@ pub struct Renderer {
     markers: Growing,
     ribbons: Growing,
     targets: Option<Targets>,
-}
-
-/// Numbers of what one picture draws, filled in by the upload.
-struct Counts {
-    figures: u32,
-    contacts: u32,
-    markers: [std::ops::Range<u32>; 5],
-    ribbons: u32,
-    hide_figures: bool,
 }
 
 impl Renderer {
@@ -146,47 +139,6 @@ impl Renderer {
         let mut encoder = self.gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
         self.draw(&mut encoder, target.view(), target.size(), scene);
         target.finish(&self.gpu, encoder)
-    }
-
-    fn upload(&mut self, scene: &Scene, [width, height]: [u32; 2]) -> Counts {
-        let (device, queue) = (&self.gpu.device, &self.gpu.queue);
-        let aspect = width as f32 / height.max(1) as f32;
-        queue.write_buffer(&self.frame, 0, bytemuck::bytes_of(&FrameData::new(scene, aspect, &self.config)));
-
-        let figures = &scene.figures;
-        let joints = self.mesh.joints.len();
-        let mut palette = Vec::with_capacity(figures.len() * joints);
-        let mut instances = Vec::with_capacity(figures.len());
-        let mut patches: Vec<ContactData> = Vec::new();
-        for figure in figures {
-            let first = palette.len() as u32;
-            instances.push(InstanceData { tint: figure.tint, ground: figure.ground, first, padding: [0; 2] });
-            self.mesh.palette_into(&figure.positions, &figure.rotations, &mut palette);
-            contacts(figure, &mut patches);
-        }
-        let grown =
-            self.palette.write(device, queue, &palette) | self.instances.write(device, queue, &instances);
-        if grown {
-            let buffers = [self.instances.buffer(), self.palette.buffer()];
-            self.figures_group = bind_buffers(device, &self.layouts.figures, &buffers);
-        }
-        self.contacts.write(device, queue, &patches);
-        self.ribbons.write(device, queue, &scene.ribbons);
-        let mut sorted = Vec::with_capacity(scene.markers.len());
-        let markers = Solid::ALL.map(|solid| {
-            let start = sorted.len() as u32;
-            let of_kind = scene.markers.iter().filter(|m| m.solid == solid);
-            sorted.extend(of_kind.map(|m| MarkerData::new(m.place, m.colour)));
-            start..sorted.len() as u32
-        });
-        self.markers.write(device, queue, &sorted);
-        Counts {
-            figures: instances.len() as u32,
-            contacts: patches.len() as u32,
-            markers,
-            ribbons: scene.ribbons.len() as u32,
-            hide_figures: scene.hide_figures,
-        }
     }
 
     /// Level of detail for so many figures.

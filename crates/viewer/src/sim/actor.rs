@@ -32,6 +32,8 @@ pub struct Actor {
     poses: [BodyPoses; 2],
     reports: VecDeque<TickReport>,
     was_down: bool,
+    /// Ticks it was taken back and has not gone on from.
+    age: usize,
 }
 
 impl Actor {
@@ -46,6 +48,7 @@ impl Actor {
             poses: [BodyPoses::default(); 2],
             reports: VecDeque::with_capacity(KEPT_REPORTS),
             was_down: false,
+            age: 0,
         };
         actor.restart(character);
         actor
@@ -106,6 +109,8 @@ impl Actor {
         let before = self.position();
         self.take_pose(character);
         let report = *self.report();
+        // What came after the state it was taken back to is forgotten.
+        self.reports.truncate(self.reports.len().saturating_sub(std::mem::take(&mut self.age)).max(1));
         if self.reports.len() == KEPT_REPORTS {
             self.reports.pop_front();
         }
@@ -123,7 +128,7 @@ impl Actor {
         self.controller.reset();
         self.reports.clear();
         self.reports.push_back(*self.controller.report());
-        (self.lay_secs, self.was_down) = (0.0, false);
+        (self.lay_secs, self.was_down, self.age) = (0.0, false, 0);
         self.take_pose(character);
         self.poses[0] = self.poses[1];
     }
@@ -133,6 +138,7 @@ impl Actor {
         if let Some(report) = self.reports.len().checked_sub(age + 1).and_then(|i| self.reports.get(i)) {
             self.controller.place_at(report.position);
         }
+        self.age = age;
         self.take_pose(character);
         self.poses[0] = self.poses[1];
     }

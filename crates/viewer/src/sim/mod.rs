@@ -4,13 +4,14 @@
 mod actor;
 mod error;
 mod ghost;
+mod queries;
 mod setup;
 mod totals;
 
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
-use physics_bridge::{BodyPoses, Character, Crowd, Diverged, Dump, Model, Settings};
+use physics_bridge::{Crowd, Diverged, Dump, Model, Settings};
 use policy_core::{
     Blend, BlendMode, CharacterPack, Command, CommandMapper, GamepadState, Goal, GraphPosition, Heading,
 };
@@ -77,77 +78,6 @@ pub struct Simulation {
 }
 
 impl Simulation {
-    /// The pack.
-    #[must_use]
-    pub fn pack(&self) -> &Arc<CharacterPack> {
-        &self.pack
-    }
-
-    /// Ground and settings.
-    #[must_use]
-    pub fn model(&self) -> &Model {
-        &self.model
-    }
-
-    /// What it was made of.
-    #[must_use]
-    pub fn config(&self) -> &SimConfig {
-        &self.config
-    }
-
-    /// Characters, the player's first.
-    #[must_use]
-    pub fn actors(&self) -> &[Actor] {
-        &self.actors
-    }
-
-    /// The player's character.
-    #[must_use]
-    pub fn player(&self) -> &Actor {
-        &self.actors[0]
-    }
-
-    /// The physics of a character.
-    ///
-    /// # Panics
-    /// When there is none of that index.
-    #[must_use]
-    pub fn character(&self, index: usize) -> &Character {
-        self.crowd.character(index)
-    }
-
-    /// The physics of a character, to push it.
-    ///
-    /// # Panics
-    /// When there is none of that index.
-    pub fn character_mut(&mut self, index: usize) -> &mut Character {
-        self.crowd.character_mut(index)
-    }
-
-    /// The second character of the side-by-side comparison.
-    #[must_use]
-    pub fn ghost(&self) -> Option<&Ghost> {
-        self.ghost.as_ref()
-    }
-
-    /// Control ticks since it began.
-    #[must_use]
-    pub fn ticks(&self) -> u64 {
-        self.ticks
-    }
-
-    /// Time the last tick took.
-    #[must_use]
-    pub fn times(&self) -> TickTimes {
-        self.times
-    }
-
-    /// Sums over the whole run.
-    #[must_use]
-    pub fn totals(&self) -> &Totals {
-        &self.totals
-    }
-
     /// Runs one control tick under `pad`, for a camera that looks along `camera`. Characters that blow up are
     /// back in their state before it, and are answered.
     pub fn tick(&mut self, pad: &GamepadState, camera: Heading) -> Vec<Blowup> {
@@ -257,21 +187,8 @@ impl Simulation {
         }
     }
 
-    /// States that the player can be taken back by, and how far back it is now.
-    #[must_use]
-    pub fn history(&self) -> (usize, usize) {
-        let player = self.crowd.character(0);
-        (player.history_len().saturating_sub(1), player.history_age())
-    }
-
     /// Puts the player's controller at a place on the graph at once.
     pub fn place_at(&mut self, position: GraphPosition) {
         self.actors[0].controller.place_at(position);
-    }
-
-    /// Poses of the ghost between the last two ticks.
-    #[must_use]
-    pub fn ghost_poses(&self, alpha: f32) -> Option<BodyPoses> {
-        self.ghost.as_ref().map(|g| g.poses(alpha))
     }
 }

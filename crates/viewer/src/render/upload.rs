@@ -1,0 +1,57 @@
+//! From a [`Scene`] to the buffers of one picture.
+
+use super::gpu_data::{ContactData, FrameData, InstanceData, MarkerData, contacts};
+use super::{Renderer, Scene, Solid, bind_buffers};
+
+/// Numbers of what one picture draws, filled in by the upload.
+pub(super) struct Counts {
+    pub(super) figures: u32,
+    pub(super) contacts: u32,
+    pub(super) markers: [std::ops::Range<u32>; 5],
+    pub(super) ribbons: u32,
+    pub(super) hide_figures: bool,
+}
+
+impl Renderer {
+    /// Writes everything that changes from picture to picture.
+    pub(super) fn upload(&mut self, scene: &Scene, [width, height]: [u32; 2]) -> Counts {
+        let (device, queue) = (&self.gpu.device, &self.gpu.queue);
+        let aspect = width as f32 / height.max(1) as f32;
+        queue.write_buffer(&self.frame, 0, bytemuck::bytes_of(&FrameData::new(scene, aspect, &self.config)));
+
+        let figures = &scene.figures;
+        let joints = self.mesh.joints.len();
+        let mut palette = Vec::with_capacity(figures.len() * joints);
+        let mut instances = Vec::with_capacity(figures.len());
+        let mut patches: Vec<ContactData> = Vec::new();
+        for figure in figures {
+            let first = palette.len() as u32;
+            instances.push(InstanceData { tint: figure.tint, ground: figure.ground, first, padding: [0; 2] });
+            self.mesh.palette_into(&figure.positions, &figure.rotations, &mut palette);
+            contacts(figure, &mut patches);
+        }
+        let grown =
+            self.palette.write(device, queue, &palette) | self.instances.write(device, queue, &instances);
+        if grown {
+            let buffers = [self.instances.buffer(), self.palette.buffer()];
+            self.figures_group = bind_buffers(device, &self.layouts.figures, &buffers);
+        }
+        self.contacts.write(device, queue, &patches);
+        self.ribbons.write(device, queue, &scene.ribbons);
+        let mut sorted = Vec::with_capacity(scene.markers.len());
+        let markers = Solid::ALL.map(|solid| {
+            let start = sorted.len() as u32;
+            let of_kind = scene.markers.iter().filter(|m| m.solid == solid);
+            sorted.extend(of_kind.map(|m| MarkerData::new(m.place, m.colour)));
+            start..sorted.len() as u32
+        });
+        self.markers.write(device, queue, &sorted);
+        Counts {
+            figures: instances.len() as u32,
+            contacts: patches.len() as u32,
+            markers,
+            ribbons: scene.ribbons.len() as u32,
+            hide_figures: scene.hide_figures,
+        }
+    }
+}

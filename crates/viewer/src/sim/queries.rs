@@ -1,0 +1,94 @@
+//! What can be asked of a world.
+
+use std::sync::Arc;
+
+use physics_bridge::{BodyPoses, Character, Model};
+use policy_core::CharacterPack;
+
+use super::{Actor, Ghost, SimConfig, Simulation, TickTimes, Totals};
+
+impl Simulation {
+    /// The pack.
+    #[must_use]
+    pub fn pack(&self) -> &Arc<CharacterPack> {
+        &self.pack
+    }
+
+    /// Ground and settings.
+    #[must_use]
+    pub fn model(&self) -> &Model {
+        &self.model
+    }
+
+    /// What it was made of.
+    #[must_use]
+    pub fn config(&self) -> &SimConfig {
+        &self.config
+    }
+
+    /// Characters, the player's first.
+    #[must_use]
+    pub fn actors(&self) -> &[Actor] {
+        &self.actors
+    }
+
+    /// The player's character.
+    #[must_use]
+    pub fn player(&self) -> &Actor {
+        &self.actors[0]
+    }
+
+    /// The physics of a character.
+    ///
+    /// # Panics
+    /// When there is none of that index.
+    #[must_use]
+    pub fn character(&self, index: usize) -> &Character {
+        self.crowd.character(index)
+    }
+
+    /// The physics of a character, to push it.
+    ///
+    /// # Panics
+    /// When there is none of that index.
+    pub fn character_mut(&mut self, index: usize) -> &mut Character {
+        self.crowd.character_mut(index)
+    }
+
+    /// The second character of the side-by-side comparison.
+    #[must_use]
+    pub fn ghost(&self) -> Option<&Ghost> {
+        self.ghost.as_ref()
+    }
+
+    /// Control ticks since it began.
+    #[must_use]
+    pub fn ticks(&self) -> u64 {
+        self.ticks
+    }
+
+    /// Time the last tick took.
+    #[must_use]
+    pub fn times(&self) -> TickTimes {
+        self.times
+    }
+
+    /// Sums over the whole run.
+    #[must_use]
+    pub fn totals(&self) -> &Totals {
+        &self.totals
+    }
+
+    /// States that the player can be taken back by, and how far back it is now.
+    #[must_use]
+    pub fn history(&self) -> (usize, usize) {
+        let player = self.crowd.character(0);
+        (player.history_len().saturating_sub(1), player.history_age())
+    }
+
+    /// Poses of the ghost between the last two ticks.
+    #[must_use]
+    pub fn ghost_poses(&self, alpha: f32) -> Option<BodyPoses> {
+        self.ghost.as_ref().map(|g| g.poses(alpha))
+    }
+}

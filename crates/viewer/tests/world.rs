@@ -1,0 +1,128 @@
+//! The world of the demo: ghosts, going back, falls, what is refused; and recordings.
+
+mod common;
+
+use std::sync::Arc;
+
+use common::simulation;
+use image::{Rgba, RgbaImage};
+use physics_bridge::Settings;
+use policy_core::{BlendMode, CharacterPack, GamepadState, Heading};
+use viewer::assets;
+use viewer::recorder::{Kind, Recorder};
+use viewer::sim::{LIE_SECS, SimConfig, SimError, Simulation, TICK_SECS};
+
+const FORWARD: GamepadState = GamepadState {
+    left_stick: [0.0, 1.0],
+    right_stick: [0.0; 2],
+    left_trigger: 0.0,
+    right_trigger: 0.0,
+    buttons: policy_core::Buttons::NONE,
+};
+
+fn run(sim: &mut Simulation, ticks: usize) {
+    for _ in 0..ticks {
+        assert!(sim.tick(&FORWARD, Heading::FORWARD).is_empty());
+    }
+}
+
+#[test]
+fn a_ghost_under_the_same_mode_does_the_same_and_under_another_does_not() {
+    let mut sim = simulation();
+    run(&mut sim, 20);
+    sim.start_ghost(BlendMode::Parameters);
+    run(&mut sim, 40);
+    assert_eq!(sim.ghost_poses(1.0), Some(sim.player().poses(1.0)));
+    let mut sim = simulation();
+    run(&mut sim, 20);
+    sim.start_ghost(BlendMode::Switch);
+    run(&mut sim, 40);
+    assert_ne!(sim.ghost_poses(1.0), Some(sim.player().poses(1.0)));
+}
+
+#[test]
+fn going_back_and_on_leads_to_the_same_place() {
+    let mut sim = simulation();
+    run(&mut sim, 90);
+    let there = sim.character(0).pose();
+    assert_eq!(sim.history(), (90, 0));
+    // From a moment at which the blend rests, so that nothing but the physics matters.
+    sim.rewind_to(10);
+    assert_ne!(sim.character(0).pose(), there);
+    run(&mut sim, 10);
+    assert_eq!(sim.history(), (90, 0));
+    assert_eq!(sim.character(0).pose(), there);
+    // A second way back counts from the new present.
+    sim.rewind_to(90);
+    assert!(sim.player().position().length() < 0.05);
+}
+
+#[test]
+fn who_falls_without_a_skill_to_rise_is_counted_and_stood_up() {
+    let mut sim = simulation();
+    let mut limp = sim.model().settings();
+    limp.strength = 0.0;
+    sim.set_settings(limp).unwrap();
+    let ticks = ((LIE_SECS + 3.0) / TICK_SECS) as usize;
+    run(&mut sim, ticks);
+    assert!(sim.totals().falls >= 1, "{:?}", sim.totals());
+    if sim.pack().recovery().is_none() {
+        assert!(sim.totals().stood_up >= 1, "{:?}", sim.totals());
+    }
+    assert!(sim.totals().down_ticks > 30);
+}
+
+#[test]
+fn what_is_out_of_range_changes_nothing() {
+    let mut sim = simulation();
+    let mut heavy = sim.model().settings();
+    heavy.gravity = 1e9;
+    assert!(matches!(sim.set_settings(heavy), Err(SimError::Model(_))));
+    assert_eq!(sim.model().settings(), Settings::default());
+    let config = SimConfig { characters: 0, ..*sim.config() };
+    assert!(matches!(sim.rebuild(config), Err(SimError::Characters { found: 0 })));
+    assert_eq!(sim.actors().len(), 1);
+    let pack = Arc::new(CharacterPack::from_bytes(assets::HUMANOID_PACK).unwrap());
+    assert!(Simulation::new("<mujoco/>", pack, SimConfig::default()).is_err());
+}
+
+fn picture(number: u8) -> RgbaImage {
+    RgbaImage::from_pixel(16, 8, Rgba([number * 40, 20, 200, 255]))
+}
+
+#[test]
+fn a_film_without_ffmpeg_is_an_animation_of_all_pictures() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("film.png");
+    let mut recorder = Recorder::start(Kind::Apng, path.clone(), [16, 8], 25);
+    for number in 0..4 {
+        assert!(recorder.take(picture(number)));
+    }
+    assert_eq!(recorder.finish().unwrap(), 0);
+    let decoder = png::Decoder::new(std::io::BufReader::new(std::fs::File::open(&path).unwrap()));
+    let mut reader = decoder.read_info().unwrap();
+    assert_eq!(reader.info().animation_control().unwrap().num_frames, 4);
+    let mut bytes = vec![0; reader.output_buffer_size().unwrap()];
+    for number in 0..4 {
+        reader.next_frame(&mut bytes).unwrap();
+        assert_eq!(bytes, picture(number).into_raw());
+    }
+    assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 1, "parts are left behind");
+}
+
+#[test]
+fn a_sequence_is_numbered_and_a_bad_folder_is_an_error() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut recorder = Recorder::start(Kind::Sequence, folder.path().join("a/b"), [16, 8], 25);
+    for number in 0..3 {
+        assert!(recorder.take(picture(number)));
+    }
+    recorder.finish().unwrap();
+    assert_eq!(image::open(folder.path().join("a/b/frame_00002.png")).unwrap().to_rgba8(), picture(2));
+    let taken = folder.path().join("taken");
+    std::fs::write(&taken, b"").unwrap();
+    let mut recorder = Recorder::start(Kind::Sequence, taken.join("c"), [16, 8], 25);
+    recorder.take(picture(0));
+    let error = recorder.finish().unwrap_err().to_string();
+    assert!(error.contains("taken"), "{error}");
+}
