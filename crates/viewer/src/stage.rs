@@ -148,8 +148,16 @@ pub fn set_scene(
 
 fn figure(sim: &Simulation, poses: &BodyPoses, tint: [f32; 4]) -> Figure {
     let pelvis = poses.positions[0];
-    let ground = sim.model().height_at(pelvis.x, pelvis.y);
-    Figure { positions: poses.positions, rotations: poses.rotations, tint, ground }
+    let height = |dx: f32, dy: f32| sim.model().height_at(pelvis.x + dx, pelvis.y + dy);
+    // Over half a metre: what a patch of shadow lies on, not the edge of a step.
+    let slope = [height(0.25, 0.0) - height(-0.25, 0.0), height(0.0, 0.25) - height(0.0, -0.25)];
+    Figure {
+        positions: poses.positions,
+        rotations: poses.rotations,
+        tint,
+        ground: height(0.0, 0.0),
+        slope: slope.map(|rise| (2.0 * rise).clamp(-0.6, 0.6)),
+    }
 }
 
 /// The player in its own colours, the crowd in muted ones that differ.

@@ -145,20 +145,23 @@ pub(super) fn contacts(figure: &Figure, out: &mut Vec<ContactData>) {
         (Body::Pelvis, Vec3::new(0.0, 0.0, 0.05), 0.36, 0.36, 0.7, 0.65),
         (Body::Pelvis, Vec3::new(0.0, 0.0, 0.05), 0.7, 0.7, 1.9, 0.30),
     ];
+    let slope = Vec2::from(figure.slope);
     for (body, middle, length, width, vanish, darkness) in PATCHES {
         let (position, rotation) = (figure.positions[body.index()], figure.rotations[body.index()]);
         let at = position + rotation * middle;
-        let height = (at.z - figure.ground).max(0.0);
+        let ground = figure.ground + slope.dot((at - figure.positions[0]).truncate());
+        let height = (at.z - ground).max(0.0);
         let near = 1.0 - height / vanish;
         if near <= 0.0 {
             continue;
         }
         let forward = (rotation * Vec3::X).truncate().normalize_or(Vec2::X);
         let grown = 1.0 + 0.6 * (1.0 - near);
+        let on_ground = |v: Vec2| v.extend(slope.dot(v)).extend(0.0).to_array();
         out.push(ContactData {
-            centre: [at.x, at.y, figure.ground + 0.004, darkness * near],
-            along: [forward.x * length * grown, forward.y * length * grown, 0.0, 0.0],
-            across: [-forward.y * width * grown, forward.x * width * grown, 0.0, 0.0],
+            centre: [at.x, at.y, ground + 0.004, darkness * near],
+            along: on_ground(forward * length * grown),
+            across: on_ground(forward.perp() * width * grown),
         });
     }
 }

@@ -38,8 +38,10 @@ pub struct Figure {
     pub rotations: [Quat; 15],
     /// Colour of its clothes and how much of it, 0 to 1.
     pub tint: [f32; 4],
-    /// Height of the ground below it.
+    /// Height of the ground below its pelvis.
     pub ground: f32,
+    /// How that height changes along x and y.
+    pub slope: [f32; 2],
 }
 
 /// A simple solid.

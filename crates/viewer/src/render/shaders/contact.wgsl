@@ -16,7 +16,9 @@ fn vs_main(
 ) -> Varying {
     let corner = vec2f(f32(index & 1u), f32(index >> 1u)) * 2.0 - 1.0;
     let position = centre.xyz + along.xyz * corner.x + across.xyz * corner.y;
-    return Varying(frame.clip_from_world * vec4f(position, 1.0), corner, centre.w);
+    // Towards the eye, which moves nothing on the screen: uneven ground must not cut a flat patch.
+    let lift = normalize(frame.eye.xyz - position) * 0.14 * length(along.xyz);
+    return Varying(frame.clip_from_world * vec4f(position + lift, 1.0), corner, centre.w);
 }
 
 @fragment
