@@ -28,6 +28,8 @@ pub struct Desk {
     scene: Scene,
     around: f32,
     recorder: Option<(Recorder, Instant, usize)>,
+    /// Recordings that are still being written.
+    closing: Vec<Recorder>,
 }
 
 impl std::fmt::Debug for Desk {
@@ -51,6 +53,7 @@ impl Desk {
             scene: Scene::default(),
             around: 0.0,
             recorder: None,
+            closing: Vec::new(),
         }
     }
 
@@ -141,6 +144,7 @@ impl Desk {
 
     /// Starts, feeds or ends what the user asked to be recorded.
     fn record(&mut self, app: &mut App, size: [u32; 2], prepared: &Prepared) {
+        self.report_written(app);
         match app.record.take() {
             Some(Record::Screenshot) => {
                 let path = name("png");
@@ -177,9 +181,18 @@ impl Desk {
         self.recorder = Some((Recorder::start(kind, path, size, FILM_FPS), Instant::now(), 0));
     }
 
+    /// Ends the recording; what is left is written while the demo goes on.
     fn stop(&mut self, app: &mut App) {
         app.recording = None;
-        if let Some((recorder, ..)) = self.recorder.take() {
+        if let Some((mut recorder, ..)) = self.recorder.take() {
+            recorder.close();
+            self.closing.push(recorder);
+        }
+    }
+
+    /// Says which recordings have been written.
+    fn report_written(&mut self, app: &mut App) {
+        for recorder in self.closing.extract_if(.., |recorder| recorder.is_finished()) {
             let path = recorder.path().display().to_string();
             app.notice = Some(match recorder.finish() {
                 Ok(0) => format!("wrote {path}"),
@@ -189,9 +202,9 @@ impl Desk {
         }
     }
 
-    /// Ends a recording that still runs.
-    pub fn finish(mut self) {
-        if let Some((recorder, ..)) = self.recorder.take() {
+    /// Ends recordings that still run, and waits until they are written.
+    pub fn finish(self) {
+        for recorder in self.recorder.map(|(recorder, ..)| recorder).into_iter().chain(self.closing) {
             // The window is gone: there is nobody left to tell.
             let _ = recorder.finish();
         }

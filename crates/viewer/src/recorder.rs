@@ -109,12 +109,23 @@ impl Recorder {
         }
     }
 
-    /// Ends the recording; answers how many pictures were dropped.
+    /// Takes no more pictures and writes what is left; does not wait for it.
+    pub fn close(&mut self) {
+        self.frames = None;
+    }
+
+    /// True when all is written, after [`Recorder::close`] or a failure.
+    #[must_use]
+    pub fn is_finished(&self) -> bool {
+        self.thread.as_ref().is_none_or(JoinHandle::is_finished)
+    }
+
+    /// Ends the recording, waits until all is written and answers how many pictures were dropped.
     ///
     /// # Errors
     /// When anything could not be written.
     pub fn finish(mut self) -> Result<usize, RecorderError> {
-        self.frames = None;
+        self.close();
         match self.thread.take().map(JoinHandle::join) {
             Some(Ok(result)) => result.map(|()| self.dropped),
             _ => Ok(self.dropped),
