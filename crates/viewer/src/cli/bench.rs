@@ -22,9 +22,9 @@ use crate::stage::{Shown, Trail, set_scene};
 /// Characters in the crowd that is timed.
 const CROWD: usize = 64;
 /// Rounds; each runs both loops, so that both see the same machine.
-const ROUNDS: usize = 8;
+const ROUNDS: usize = 60;
 /// Control ticks a round.
-const TICKS: usize = 30;
+const TICKS: usize = 5;
 
 /// A walking character's mind and what it cost.
 struct Mind {

@@ -32,7 +32,9 @@ pub struct RenderConfig {
     pub shadow_taps: u32,
     /// Furthest that shadows reach from the focus, metres.
     pub shadow_reach_m: f32,
-    /// Figures above which the coarse mesh is drawn.
+    /// Level of detail of few figures, 0 the finest; the last there is when there are fewer.
+    pub finest: usize,
+    /// Figures above which the coarsest mesh is drawn.
     pub coarse_above: usize,
     /// Sun and sky.
     pub light: Light,
@@ -43,7 +45,7 @@ impl RenderConfig {
     #[must_use]
     pub fn for_adapter(is_software: bool) -> Self {
         if is_software {
-            Self { shadow_size: 1024, shadow_taps: 8, coarse_above: 3, ..Self::default() }
+            Self { shadow_size: 1024, shadow_taps: 8, finest: 1, coarse_above: 3, ..Self::default() }
         } else {
             Self::default()
         }
@@ -57,6 +59,7 @@ impl Default for RenderConfig {
             shadow_size: 2048,
             shadow_taps: 24,
             shadow_reach_m: 30.0,
+            finest: 0,
             coarse_above: 16,
             light: Light::default(),
         }
@@ -71,7 +74,7 @@ impl Default for Light {
             zenith: Vec3::new(0.16, 0.30, 0.58),
             horizon: Vec3::new(0.60, 0.69, 0.78),
             bounce: Vec3::new(0.13, 0.125, 0.12),
-            exposure: 0.85,
+            exposure: 1.12,
             penumbra_m: 0.022,
         }
     }

@@ -145,7 +145,7 @@ impl Renderer {
     fn level(&self, figures: u32) -> &model::LevelBuffers {
         let coarse = figures as usize > self.config.coarse_above;
         let last = self.mesh_buffers.levels.len() - 1;
-        &self.mesh_buffers.levels[if coarse { last } else { 0 }]
+        &self.mesh_buffers.levels[if coarse { last } else { self.config.finest.min(last) }]
     }
 
     fn draw_shadows(&self, encoder: &mut wgpu::CommandEncoder, counts: &Counts) {

@@ -93,13 +93,9 @@ fn shade(position: vec3f, normal: vec3f, colour: vec3f, roughness: f32, metallic
     return direct * sun + (diffuse * ambient(normal) + mirrored) * open;
 }
 
-// Exposure, a filmic curve (Narkowicz' fit of ACES) and the sRGB transfer function, the latter as a sum of
-// roots: within half a step of eight bits, and cheap without a graphics card.
+// Exposure, then a filmic curve that contains the transfer function of the screen (Hejl and Burgess-Dawson):
+// one division, which matters without a graphics card.
 fn to_screen(radiance: vec3f) -> vec3f {
-    let x = radiance * frame.eye.w;
-    let film = clamp(x * (2.51 * x + 0.03) / (x * (2.43 * x + 0.59) + 0.14), vec3f(0.0), vec3f(1.0));
-    let root2 = sqrt(film);
-    let root4 = sqrt(root2);
-    let root8 = sqrt(root4);
-    return 0.662002687 * root2 + 0.684122060 * root4 - 0.323583601 * root8 - 0.022541147 * film;
+    let x = max(radiance * frame.eye.w - 0.004, vec3f(0.0));
+    return x * (6.2 * x + 0.5) / (x * (6.2 * x + 1.7) + 0.06);
 }
