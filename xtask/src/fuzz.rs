@@ -48,7 +48,8 @@ pub fn run(workspace: &Workspace, arguments: &FuzzArgs) -> Result<()> {
                 .env_remove("RUSTUP_TOOLCHAIN")
                 .env_remove("CARGO")
                 .args(["run", "nightly", "cargo", "fuzz", "run", &target, "--"])
-                .arg(format!("-max_total_time={seconds:.0}")),
+                .arg(format!("-max_total_time={seconds:.0}"))
+                .args(length_limit(&target)),
         )?;
     }
     Ok(())
@@ -68,6 +69,11 @@ fn target_names(metadata: &str) -> Result<Vec<String>> {
         |target: &&Value| target["kind"].as_array().is_some_and(|kinds| kinds.contains(&"bin".into()));
     let names = targets.iter().filter(is_binary).filter_map(|target| target["name"].as_str());
     Ok(names.map(str::to_owned).collect())
+}
+
+/// Input of most targets is short, and bounds what one may take; a pack alone is longer than 4 KiB.
+fn length_limit(target: &str) -> Option<&'static str> {
+    (target != "pack").then_some("-max_len=4096")
 }
 
 /// Starts a target's corpus with what the project ships: sound input is the best to mutate.
