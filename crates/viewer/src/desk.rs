@@ -42,12 +42,23 @@ impl Desk {
     /// For views of `format`.
     #[must_use]
     pub fn new(gpu: &Gpu, format: wgpu::TextureFormat, mesh: SkinnedMesh) -> Self {
+        Self::with_config(gpu, format, RenderConfig::for_adapter(gpu.is_software), mesh)
+    }
+
+    /// The same with a quality other than what the adapter can show in time.
+    #[must_use]
+    pub fn with_config(
+        gpu: &Gpu,
+        format: wgpu::TextureFormat,
+        config: RenderConfig,
+        mesh: SkinnedMesh,
+    ) -> Self {
         let context = egui::Context::default();
         context.set_visuals(egui::Visuals::dark());
         Self {
             gpu: gpu.clone(),
             format,
-            renderer: Renderer::new(gpu, format, RenderConfig::for_adapter(gpu.is_software), mesh),
+            renderer: Renderer::new(gpu, format, config, mesh),
             overlay: Overlay::new(gpu, format),
             context,
             scene: Scene::default(),

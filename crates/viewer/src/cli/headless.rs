@@ -15,7 +15,7 @@ use crate::app::App;
 use crate::desk::Desk;
 use crate::gpu::Gpu;
 use crate::mesh::SkinnedMesh;
-use crate::render::OffScreen;
+use crate::render::{OffScreen, RenderConfig};
 use crate::sim::{Blowup, LIE_SECS, TICK_SECS};
 
 /// Runs the demo without a window.
@@ -157,8 +157,10 @@ impl Painter {
             .with_context(|| format!("cannot make the folder {}", folder.display()))?;
         let gpu = Gpu::off_screen()?;
         app.adapter.clone_from(&gpu.adapter_name);
+        // Nobody waits for these: full quality whatever draws them.
+        let config = RenderConfig { shadow_size: 2048, shadow_taps: 16, ..RenderConfig::default() };
         Ok(Self {
-            desk: Desk::new(&gpu, OffScreen::FORMAT, mesh),
+            desk: Desk::with_config(&gpu, OffScreen::FORMAT, config, mesh),
             size: demo.size,
             panels: demo.panels.is_some(),
             around: demo.view_angle.to_radians(),
