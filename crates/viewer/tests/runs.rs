@@ -47,6 +47,47 @@ fn two_runs_have_the_same_state_and_a_whole_report() {
     assert!(left.iter().all(|name| ["a.json", "b", "c.json"].contains(&name.as_str())), "{left:?}");
 }
 
+/// Five seconds of a DualShock 4 on its cable: at rest until it is calibrated, then the left stick forward.
+fn recording() -> Vec<u8> {
+    use gamepad::recording::{PadEvent, RecordedPad, Recorder};
+    use gamepad::{Bus, PadId};
+    let id = PadId { vendor: 0x054c, product: 0x09cc, bus: Bus::Usb };
+    let pad = RecordedPad { id, name: "a pad".into(), descriptor: Some(Vec::new()) };
+    let mut recorder = Recorder::new(Vec::new(), &pad).unwrap();
+    for step in 0..1250u16 {
+        let mut report = [0; 64];
+        let forward = if step < 250 { 128 } else { 0 };
+        report[..5].copy_from_slice(&[0x01, 128, forward, 128, 128]);
+        report[5] = 0x08;
+        recorder.record(f64::from(step) * 0.004, PadEvent::Report(&report)).unwrap();
+    }
+    recorder.finish().unwrap()
+}
+
+#[test]
+fn a_recorded_pad_drives_the_demo_to_the_same_state() {
+    let folder = tempfile::tempdir().unwrap();
+    std::fs::write(folder.path().join("pad.rec"), recording()).unwrap();
+    let report = |recorded: bool| {
+        let mut arguments = vec!["--headless", "--seconds", "5", "--report", "r.json"];
+        if recorded {
+            arguments.extend(["--recording", "pad.rec"]);
+        }
+        let output = run(folder.path(), &arguments);
+        assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+        let bytes = std::fs::read(folder.path().join("r.json")).unwrap();
+        serde_json::from_slice::<serde_json::Value>(&bytes).unwrap()
+    };
+    let (first, second, neutral) = (report(true), report(true), report(false));
+    assert_eq!(first["state_hash"], second["state_hash"]);
+    assert_ne!(first["state_hash"], neutral["state_hash"]);
+    let distance = |r: &serde_json::Value| r["distance_m"].as_f64().unwrap();
+    assert!(distance(&first) > distance(&neutral) + 1.0, "the stick walks: {first}, {neutral}");
+    let output = run(folder.path(), &["--headless", "--recording", "r.json"]);
+    let said = String::from_utf8_lossy(&output.stderr).into_owned();
+    assert!(output.status.code() == Some(1) && said.contains("r.json"), "{said}");
+}
+
 #[test]
 fn pictures_are_written_at_the_rate_asked_for() {
     if gpu().is_none() {

@@ -4,11 +4,10 @@ use std::path::{Path, PathBuf};
 use std::time::Instant;
 
 use anyhow::{Context as _, bail};
-use gamepad::Script;
-use policy_core::GamepadState;
 
 use super::Demo;
 use super::open::open;
+use super::pad_input::PadInput;
 use super::report::Report;
 use crate::analysis::Analysis;
 use crate::app::App;
@@ -39,7 +38,7 @@ pub fn run(demo: &Demo) -> anyhow::Result<Report> {
 struct Headless<'a> {
     demo: &'a Demo,
     app: App,
-    script: Option<Script>,
+    input: PadInput,
     seconds: f64,
     painter: Option<Painter>,
     blowups: usize,
@@ -48,8 +47,8 @@ struct Headless<'a> {
 
 impl<'a> Headless<'a> {
     fn new(demo: &'a Demo) -> anyhow::Result<Self> {
-        let script = demo.script.as_deref().map(Script::load).transpose()?;
-        let seconds = demo.seconds.or(script.as_ref().map(Script::duration)).unwrap_or(10.0);
+        let input = PadInput::load(demo)?;
+        let seconds = demo.seconds.or(input.duration()).unwrap_or(10.0);
         let opened = open(demo)?;
         let mut app = opened.app;
         if let Some(complaint) = app.notice.take() {
@@ -62,12 +61,12 @@ impl<'a> Headless<'a> {
             Some(folder) => Some(Painter::new(demo, folder, opened.mesh, &mut app)?),
             None => None,
         };
-        Ok(Self { demo, app, script, seconds, painter, blowups: 0, dumps: Vec::new() })
+        Ok(Self { demo, app, input, seconds, painter, blowups: 0, dumps: Vec::new() })
     }
 
     fn tick(&mut self, tick: u64) -> anyhow::Result<()> {
         let start = tick as f64 * f64::from(TICK_SECS);
-        let pad = self.script.as_ref().map_or_else(GamepadState::default, |s| s.state_at(start));
+        let pad = self.input.state_at(start);
         (self.app.pad.raw, self.app.pad.state) = (pad, pad);
         for blowup in self.app.tick() {
             self.keep(&blowup)?;

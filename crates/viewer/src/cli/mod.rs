@@ -4,6 +4,7 @@ pub mod bench;
 pub mod headless;
 pub mod load;
 pub mod open;
+mod pad_input;
 mod report;
 
 use std::io::Write as _;
@@ -67,7 +68,10 @@ pub struct Demo {
     /// Pad input over time (RON); headless runs only. Without it the pad is neutral.
     #[arg(long, value_name = "FILE", requires = "headless")]
     pub script: Option<PathBuf>,
-    /// How long to simulate, up to 3600; by default as long as the script, or 10.
+    /// Pad input recorded from a device by `pad record`, instead of a script.
+    #[arg(long, value_name = "FILE", requires = "headless", conflicts_with = "script")]
+    pub recording: Option<PathBuf>,
+    /// How long to simulate, up to 3600; by default as long as the script or recording, or 10.
     #[arg(long, value_name = "SECONDS", requires = "headless", value_parser = seconds)]
     pub seconds: Option<f64>,
     /// Write what happened as JSON to this file.

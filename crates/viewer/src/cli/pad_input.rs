@@ -1,0 +1,49 @@
+//! Where a run without a window gets its pad from: a script, a recording of a device, or nowhere.
+
+use anyhow::Context as _;
+use gamepad::recording::{Recording, VirtualPad};
+use gamepad::{GamepadState, Script};
+
+use super::Demo;
+
+/// A pad that depends on time alone.
+pub enum PadInput {
+    /// Nobody touches it.
+    Neutral,
+    /// Key frames over time.
+    Script(Script),
+    /// Reports of a device, parsed and cleaned as those of a connected one.
+    Recording(Box<VirtualPad>),
+}
+
+impl PadInput {
+    /// The pad that the command line asks for.
+    ///
+    /// # Errors
+    /// When a file can't be read or is no script or recording, or a recording's pad is not known.
+    pub fn load(demo: &Demo) -> anyhow::Result<Self> {
+        if let Some(path) = &demo.recording {
+            let pad = VirtualPad::new(Recording::load(path)?).with_context(|| path.display().to_string())?;
+            return Ok(Self::Recording(Box::new(pad)));
+        }
+        Ok(demo.script.as_deref().map(Script::load).transpose()?.map_or(Self::Neutral, Self::Script))
+    }
+
+    /// Seconds it lasts; `None` for a pad that nobody touches.
+    pub fn duration(&self) -> Option<f64> {
+        match self {
+            Self::Neutral => None,
+            Self::Script(script) => Some(script.duration()),
+            Self::Recording(pad) => Some(pad.recording().duration()),
+        }
+    }
+
+    /// The pad's state at a time, seconds; times must not go back.
+    pub fn state_at(&mut self, time_secs: f64) -> GamepadState {
+        match self {
+            Self::Neutral => GamepadState::default(),
+            Self::Script(script) => script.state_at(time_secs),
+            Self::Recording(pad) => pad.report_at(time_secs).state,
+        }
+    }
+}
