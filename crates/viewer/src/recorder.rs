@@ -7,6 +7,7 @@ use std::sync::mpsc::{Receiver, SyncSender, TrySendError, sync_channel};
 use std::thread::JoinHandle;
 
 use image::RgbaImage;
+use image::imageops::FilterType;
 
 /// Frames that may wait for the disk; more are dropped.
 const WAITING: usize = 8;
@@ -74,6 +75,7 @@ pub struct Recorder {
     frames: Option<SyncSender<RgbaImage>>,
     thread: Option<JoinHandle<Result<(), RecorderError>>>,
     path: PathBuf,
+    size: [u32; 2],
     dropped: usize,
 }
 
@@ -88,7 +90,7 @@ impl Recorder {
             Kind::Mp4 => mp4(&target, size, fps, &waiting),
             Kind::Apng => apng(&target, size, fps, &waiting),
         });
-        Self { frames: Some(frames), thread: Some(thread), path, dropped: 0 }
+        Self { frames: Some(frames), thread: Some(thread), path, size, dropped: 0 }
     }
 
     /// Where it goes.
@@ -97,8 +99,14 @@ impl Recorder {
         &self.path
     }
 
-    /// Takes a picture; false when the recording has failed. A picture too many is dropped.
+    /// Takes a picture; false when the recording has failed. A picture too many is dropped, one of another
+    /// size, as after the window was resized, is fitted into the film.
     pub fn take(&mut self, picture: RgbaImage) -> bool {
+        let [width, height] = self.size;
+        let picture = match picture.dimensions() == (width, height) {
+            true => picture,
+            false => image::imageops::resize(&picture, width, height, FilterType::Triangle),
+        };
         match self.frames.as_ref().map(|f| f.try_send(picture)) {
             Some(Ok(())) => true,
             Some(Err(TrySendError::Full(_))) => {
@@ -215,6 +223,9 @@ fn apng(
             writer.write_image_data(&picture.to_rgba8()).map_err(encoding)?;
         }
         writer.finish().map_err(encoding)?;
+    }
+    if !scratch.exists() {
+        return Ok(());
     }
     std::fs::remove_dir_all(&scratch).map_err(|source| RecorderError::File { path: scratch.clone(), source })
 }
