@@ -81,6 +81,10 @@ impl Trace {
 
 /// A pelvis lower than this has fallen.
 const STANDS: f32 = 0.6;
+/// Within this way it may still be turning.
+const TURNING_METRES: f32 = 1.5;
+/// From there on it has to keep to its direction for this way.
+const STRAIGHT_METRES: f32 = 1.5;
 /// A policy may stumble where frames come irregularly; it must not do so every time.
 const ATTEMPTS: usize = 12;
 
@@ -111,11 +115,13 @@ fn the_character_walks_where_the_keys_tell_it() {
         let mut ends = Vec::new();
         let walked = (0..ATTEMPTS).any(|_| {
             keys(&["keydown", key]);
-            let end = trace.until(|at| at[along] > start[along] + 1.2);
+            let turned = trace.until(|at| at[along] > start[along] + TURNING_METRES);
+            let end = trace.until(|at| at[along] > turned[along] + STRAIGHT_METRES);
             keys(&["keyup", key, "key", "BackSpace"]);
-            ends.push(end);
+            ends.push([turned, end]);
             trace.until(|at| at[0].hypot(at[1]) < 0.2);
-            end[2] > STANDS && end[along] > start[along] + 1.2 && (end[across] - start[across]).abs() < 1.0
+            let far = end[along] > start[along] + TURNING_METRES + STRAIGHT_METRES;
+            far && end[2] > STANDS && (end[across] - turned[across]).abs() < 0.5 * STRAIGHT_METRES
         });
         assert!(walked, "{key}: it should have walked from {start:?}, and came to {ends:?}");
     }
