@@ -15,18 +15,24 @@ use viewer::stage::{Shown, Trail, ground_grid, set_scene};
 
 const SIZE: [u32; 2] = [320, 240];
 
+/// Of the scene's pixels one in so many may differ; edges of shadows are rounded here or there.
+const SCENE: usize = 50;
+/// Of pictures with panels; a letter is about thirty pixels.
+const PANELS: usize = 2000;
+
 fn mesh() -> SkinnedMesh {
     SkinnedMesh::from_bytes(assets::HUMANOID_GLB).unwrap()
 }
 
 /// Compares where the same software renderer drew the committed picture; other adapters round otherwise.
-fn compare(gpu: &viewer::gpu::Gpu, picture: &RgbaImage, name: &str) {
+/// One pixel in `tolerance` may differ.
+fn compare(gpu: &viewer::gpu::Gpu, picture: &RgbaImage, name: &str, tolerance: usize) {
     if !gpu.is_software {
         eprintln!("skipped the comparison of {name}: drawn by {}", gpu.adapter_name);
         return;
     }
-    let options =
-        SnapshotOptions::new().threshold(2.0).max_failed_pixels(SIZE[0] as usize * SIZE[1] as usize / 50);
+    let pixels = picture.width() as usize * picture.height() as usize;
+    let options = SnapshotOptions::new().threshold(2.0).max_failed_pixels(pixels / tolerance);
     try_image_snapshot_options(picture, name, &options).unwrap();
 }
 
@@ -61,11 +67,11 @@ fn the_standing_mannequin_looks_as_it_did() {
     let [top, middle] = [(10, 5), (SIZE[0] / 2, SIZE[1] / 2)].map(|(x, y)| picture.get_pixel(x, y).0);
     assert!(top[2] > top[0], "sky {top:?}");
     assert_ne!(top, middle);
-    compare(&gpu, &picture, "standing");
+    compare(&gpu, &picture, "standing", SCENE);
     let shapes =
         Shown { collision_shapes: true, centre_of_mass: true, contact_forces: true, ..Shown::default() };
     let picture = draw(&gpu, &app, &shapes);
-    compare(&gpu, &picture, "collision_shapes");
+    compare(&gpu, &picture, "collision_shapes", SCENE);
 }
 
 #[test]
@@ -75,24 +81,41 @@ fn hills_and_a_crowd_look_as_they_did() {
     app.sim.rebuild(SimConfig { ground: Ground::Wavy, characters: 12, ..SimConfig::default() }).unwrap();
     (app.camera.distance, app.camera.pitch) = (9.0, 0.45);
     app.follow(10.0, 1.0);
-    compare(&gpu, &draw(&gpu, &app, &Shown::default()), "hills_and_crowd");
+    compare(&gpu, &draw(&gpu, &app, &Shown::default()), "hills_and_crowd", SCENE);
 }
 
+/// Every panel but the profiler, whose numbers are those of the machine.
 #[test]
 fn panels_over_the_picture_look_as_they_did() {
+    use PanelKind::*;
     let Some(gpu) = gpu() else { return };
-    let layout = Layout { open: vec![(PanelKind::Paths, Side::Left)], ..Layout::default() };
-    let mut app = App::new(simulation(), layout);
-    let mut desk = Desk::new(&gpu, OffScreen::FORMAT, mesh());
-    let size = [640, 480];
-    for frame in 0..2 {
-        let rect = egui::Rect::from_min_size(egui::Pos2::ZERO, egui::vec2(640.0, 480.0));
-        let input =
-            egui::RawInput { screen_rect: Some(rect), time: Some(f64::from(frame)), ..Default::default() };
-        let output = desk.panels(&mut app, input, 0.7);
-        let picture = desk.picture(&mut app, output, size, true).unwrap();
-        if frame == 1 {
-            compare(&gpu, &picture, "panels");
-        }
+    let groups: [(&str, &[PanelKind], &[PanelKind]); 4] = [
+        ("panels", &[Paths], &[]),
+        ("panels_blends", &[Layers, BlendMode], &[Graph]),
+        ("panels_world", &[View], &[Physics]),
+        ("panels_skills", &[Skills, Record], &[Pad]),
+    ];
+    for (name, left, right) in groups {
+        let on = |side| move |kind: &PanelKind| (*kind, side);
+        let open = left.iter().map(on(Side::Left)).chain(right.iter().map(on(Side::Right)));
+        let app = App::new(simulation(), Layout { open: open.collect(), ..Layout::default() });
+        compare(&gpu, &draw_with_panels(&gpu, app), name, PANELS);
     }
+    let layout = Layout { open: vec![(Analysis, Side::Left)], ..Layout::default() };
+    let mut app = App::new(simulation(), layout);
+    app.analysis = viewer::analysis::Analysis::of(app.sim.pack());
+    compare(&gpu, &draw_with_panels(&gpu, app), "panels_analysis", PANELS);
+}
+
+/// The second frame of the demo: the first one lays out its widgets.
+fn draw_with_panels(gpu: &viewer::gpu::Gpu, mut app: App) -> RgbaImage {
+    let mut desk = Desk::new(gpu, OffScreen::FORMAT, mesh());
+    let mut frame = |time: f64| {
+        let rect = egui::Rect::from_min_size(egui::Pos2::ZERO, egui::vec2(640.0, 480.0));
+        let input = egui::RawInput { screen_rect: Some(rect), time: Some(time), ..Default::default() };
+        let output = desk.panels(&mut app, input, 0.7);
+        desk.picture(&mut app, output, [640, 480], true).unwrap()
+    };
+    frame(0.0);
+    frame(1.0)
 }
