@@ -213,10 +213,7 @@ impl Controller {
         }
         let Some(pending) = self.report.pending_skill else { return };
         let skill = &self.pack.skills()[pending];
-        let ready = match self.report.position.as_node() {
-            Some(node) => skill.starts_from(node),
-            None => skill.starts_from(self.report.position.nearest_node()),
-        };
+        let ready = skill.starts_from(self.report.position.nearest_node());
         if ready && self.report.skill.is_none() {
             self.start_skill(pending);
         }
