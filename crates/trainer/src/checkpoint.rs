@@ -67,7 +67,7 @@ pub struct Progress {
 /// State of a run.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Checkpoint {
-    /// Networks by role: `actor`, `critic`, `discriminator`, `parent_discriminator`.
+    /// Networks by role, see [`Training::networks_mut`](crate::training::Training::networks_mut).
     pub networks: HashMap<String, Trained>,
     /// The rest.
     pub progress: Progress,

@@ -9,6 +9,7 @@ pub mod evaluate;
 pub mod nn;
 pub mod normaliser_file;
 pub mod pack;
+mod parts;
 pub mod pca;
 pub mod plot;
 pub mod ppo;
@@ -16,6 +17,7 @@ pub mod recipe;
 mod rng;
 pub mod run;
 pub mod strip;
+pub mod style;
 pub mod training;
 pub mod workplace;
 

@@ -20,6 +20,9 @@ use crate::nn::Network;
 pub struct PackPlan {
     /// Name of the character.
     pub character: String,
+    /// Run in which policies of this pack were trained together; they come from there where it exists.
+    #[serde(default)]
+    pub joint: Option<String>,
     /// Skill that brings a fallen character to its feet.
     #[serde(default)]
     pub recovery: Option<String>,
@@ -143,22 +146,39 @@ pub struct Ingredient {
 }
 
 impl Ingredient {
+    /// The skill out of a checkpoint of its own run, or of one that trained it together with others; `path` is named in
+    /// errors.
+    ///
+    /// # Errors
+    /// When the checkpoint lacks a network.
+    pub fn from_checkpoint(skill: &str, loaded: &Checkpoint, path: &Path) -> Result<Self, CheckpointError> {
+        let together = Self::is_in(skill, loaded);
+        let role = |what: &str| if together { format!("{skill}.{what}") } else { what.to_owned() };
+        let progress = &loaded.progress;
+        let recipe = if together { "joint recipe" } else { "recipe" };
+        Ok(Self {
+            skill: skill.into(),
+            actor: loaded.network(&role("actor"), path)?.network.clone(),
+            discriminator: loaded.network(&role("discriminator"), path)?.network.clone(),
+            origin: format!(
+                "{recipe} {skill}, seed {}, {} samples, {:.0} s",
+                progress.seed, progress.samples, progress.secs
+            ),
+        })
+    }
+
     /// The skill of a run.
     ///
     /// # Errors
     /// When its checkpoint is missing or wrong.
     pub fn load(skill: &str, checkpoint: &Path) -> Result<Self, CheckpointError> {
-        let loaded = Checkpoint::load(checkpoint)?;
-        let progress = &loaded.progress;
-        Ok(Self {
-            skill: skill.into(),
-            actor: loaded.network("actor", checkpoint)?.network.clone(),
-            discriminator: loaded.network("discriminator", checkpoint)?.network.clone(),
-            origin: format!(
-                "recipe {skill}, seed {}, {} samples, {:.0} s",
-                progress.seed, progress.samples, progress.secs
-            ),
-        })
+        Self::from_checkpoint(skill, &Checkpoint::load(checkpoint)?, checkpoint)
+    }
+
+    /// True when a checkpoint is of a run that trained this skill together with others.
+    #[must_use]
+    pub fn is_in(skill: &str, checkpoint: &Checkpoint) -> bool {
+        checkpoint.networks.contains_key(&format!("{skill}.actor"))
     }
 }
 

@@ -20,7 +20,12 @@ pub struct Recipe {
     /// True to train the whole straight line from the parent, not only its end.
     #[serde(default)]
     pub edge: bool,
+    /// Paths of skills that are trained together, each on from its own run and with its own clips; then the recipe has
+    /// no parent and no clips, and its name is that of the run.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub paths: Vec<Vec<String>>,
     /// Demonstration clips.
+    #[serde(default)]
     pub clips: Vec<ClipShare>,
     /// Phases in order.
     pub phases: Vec<Phase>,
@@ -56,7 +61,8 @@ fn one() -> f32 {
 pub struct Phase {
     /// Samples of this phase: ticks of all characters together.
     pub samples: u64,
-    /// Weight of the task reward; the style's is one less this.
+    /// Weight of the task reward; the style's is one less this. Where skills are trained together, a factor on the weight
+    /// in the last phase of each skill's own recipe.
     pub task: f32,
     /// Height of the hills of the wavy ground that three of four episodes take place on, metres; zero for flat ground.
     #[serde(default)]
@@ -134,7 +140,24 @@ impl Recipe {
         vec![
             (plain(&self.skill), "skill", "lower-case letters, digits and underscores", self.skill.clone()),
             (!self.edge || self.parent.is_some(), "edge", "a parent beside it", "none".into()),
-            (!self.clips.is_empty(), "clips", "at least one clip", "none".into()),
+            (
+                self.clips.is_empty() != self.paths.is_empty(),
+                "clips",
+                "at least one clip, or paths instead",
+                format!("{} clips and {} paths", self.clips.len(), self.paths.len()),
+            ),
+            (
+                self.paths.is_empty() || self.parent.is_none(),
+                "parent",
+                "none beside paths",
+                self.parent.clone().unwrap_or_default(),
+            ),
+            (
+                self.paths.iter().all(|p| p.len() > 1),
+                "paths",
+                "at least two skills in each",
+                format!("{:?}", self.paths),
+            ),
             (
                 self.clips.iter().all(|c| positive(c.share)),
                 "clips.share",
@@ -170,12 +193,7 @@ impl Recipe {
             ),
             ((1..=1024).contains(&env.steps), "environment.steps", "1 to 1024", env.steps.to_string()),
             (env.episode_ticks > 0, "environment.episode_ticks", "at least 1", env.episode_ticks.to_string()),
-            (
-                env.speed_mps.is_finite() && env.parent_speed_mps.is_finite(),
-                "environment.speed_mps",
-                "a finite speed",
-                env.speed_mps.to_string(),
-            ),
+            (env.speed_mps.is_finite(), "environment.speed_mps", "a finite speed", env.speed_mps.to_string()),
             (
                 ordered(env.target_metres),
                 "environment.target_metres",
@@ -189,10 +207,18 @@ impl Recipe {
                 format!("{:?}", env.target_secs),
             ),
             (
-                unit(env.stop) && unit(env.start.other) && unit(env.start.ragdoll),
-                "environment.stop and start",
+                [env.stop, env.stick, env.jump, env.start.other, env.start.ragdoll].into_iter().all(unit),
+                "environment.stop, stick, jump and start",
                 "shares in [0, 1]",
-                format!("{:?}", env.start),
+                format!("{}, {}, {} and {:?}", env.stop, env.stick, env.jump, env.start),
+            ),
+            (
+                ordered(env.edge_sweep_secs)
+                    && env.edge_sweep_secs[0] > 0.0
+                    && (0.0..60.0).contains(&env.edge_secs),
+                "environment.edge_sweep_secs and edge_secs",
+                "least and most time above 0, and 0 to 60 s",
+                format!("{:?} and {}", env.edge_sweep_secs, env.edge_secs),
             ),
             ((0.0..1.0).contains(&ppo.gamma), "ppo.gamma", "a discount in [0, 1)", ppo.gamma.to_string()),
             (unit(ppo.gae_lambda), "ppo.gae_lambda", "a discount in [0, 1]", ppo.gae_lambda.to_string()),

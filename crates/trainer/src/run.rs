@@ -54,7 +54,8 @@ impl Run {
         let secs = start.elapsed().as_secs_f64();
         self.secs += secs;
         self.iterations += 1;
-        if !self.training.learner.actor.parameters.iter().all(|p| p.is_finite()) {
+        let mut learned = self.training.learner.actors.iter().flat_map(|a| &a.network.parameters);
+        if !learned.all(|p| p.is_finite()) {
             bail!("after {} samples: expected finite parameters, found others", self.training.samples);
         }
         let rate = (self.training.samples - before) as f64 / secs;
@@ -71,21 +72,15 @@ impl Run {
     ///
     /// # Errors
     /// When the folder can't be written.
-    pub fn save(&self) -> Result<()> {
-        let training = &self.training;
+    pub fn save(&mut self) -> Result<()> {
+        let training = &mut self.training;
         let mut networks = HashMap::new();
-        let learner = &training.learner;
-        let mut keep = |role: &str, network: &crate::nn::Network, adam: &crate::nn::Adam| {
-            networks.insert(role.to_owned(), Trained { network: network.clone(), adam: adam.clone() });
-        };
-        keep("actor", &learner.actor, &learner.actor_adam);
-        keep("critic", &learner.critic, &learner.critic_adam);
-        keep("discriminator", &training.discriminator.network, &training.discriminator.adam);
-        if let Some(parent) = &training.parent_discriminator {
-            keep("parent_discriminator", &parent.network, &parent.adam);
+        for (role, network, adam) in training.networks_mut() {
+            networks.insert(role, Trained { network: network.clone(), adam: adam.clone() });
         }
         let progress = (self.seed, training.samples, self.secs);
-        let checkpoint = Checkpoint::new(networks, progress, learner.actor_rate, learner.rng);
+        let (rate, rng) = (training.learner.actor_rate, training.learner.rng);
+        let checkpoint = Checkpoint::new(networks, progress, rate, rng);
         checkpoint.save(&self.folder.join("checkpoint.safetensors"))?;
         plot::draw(&self.folder.join("metrics.csv"), &self.folder.join("metrics.svg"))
     }

@@ -3,27 +3,30 @@
 use physics_bridge::{Model, ModelError, Terrain};
 use policy_core::{ActionScaling, DISCRIMINATOR_INPUT_LEN, DOF_COUNT, POLICY_INPUT_LEN};
 
-use crate::Rng;
-use crate::amp::{DiscriminatorLearner, DiscriminatorReport, style_reward};
-use crate::env::{CRITIC_INPUT_LEN, Demonstrations, Normalisers, Population, PopulationReport, Stage};
-use crate::nn::Network;
+use crate::amp::DiscriminatorReport;
+use crate::env::{Course, Demonstrations, Normalisers, Place, Population, PopulationReport, Stage};
+use crate::nn::{Adam, Network};
 use crate::ppo::{Learner, Rollout, UpdateReport};
 use crate::recipe::Recipe;
+use crate::style::Judges;
 
 /// Hidden sizes of every policy.
 pub const POLICY_HIDDEN: [usize; 2] = [128, 32];
 
-/// The parent of a skill as training needs it.
-#[derive(Clone, Debug)]
-pub struct Parent {
-    /// Its policy.
-    pub actor: Network,
-    /// Its critic.
-    pub critic: Network,
-    /// Its discriminator.
-    pub discriminator: Network,
-    /// Its clips.
-    pub demonstrations: Demonstrations,
+/// Role of the discriminator that judges a parent's style, in a checkpoint.
+pub const PARENT_DISCRIMINATOR: &str = "parent_discriminator";
+
+/// What a run starts from. Actors, judges and clips are in the order of the course's nodes.
+#[derive(Debug)]
+pub struct Parts {
+    /// Nodes and paths.
+    pub course: Course,
+    /// Actors and critic.
+    pub learner: Learner,
+    /// Judges of the nodes' styles, with their clips.
+    pub judges: Judges,
+    /// Other clips that episodes may start from.
+    pub start_demonstrations: Option<Demonstrations>,
 }
 
 /// Everything a run of a recipe holds.
@@ -31,21 +34,17 @@ pub struct Parent {
 pub struct Training {
     /// The recipe.
     pub recipe: Recipe,
-    /// Actor and critic.
+    /// Actors and critic.
     pub learner: Learner,
-    /// Judge of the skill's style.
-    pub discriminator: DiscriminatorLearner,
-    /// Judge of the parent's style near the parent's end of the edge.
-    pub parent_discriminator: Option<DiscriminatorLearner>,
+    /// Judges of the nodes' styles.
+    pub judges: Judges,
     /// Samples so far.
     pub samples: u64,
+    course: Course,
+    start_demonstrations: Option<Demonstrations>,
     population: Population,
     rollout: Rollout,
     judged: Vec<f32>,
-    logits: Vec<f32>,
-    demonstrations: Demonstrations,
-    parent_demonstrations: Option<Demonstrations>,
-    start_demonstrations: Option<Demonstrations>,
     normalisers: Normalisers,
     model: Model,
     scaling: ActionScaling,
@@ -63,80 +62,76 @@ pub struct IterationReport {
     pub reward: f32,
     /// Gradient steps of PPO.
     pub update: UpdateReport,
-    /// Gradient steps of the discriminator.
+    /// Gradient steps of the discriminators.
     pub discriminator: DiscriminatorReport,
-    /// Squared distance to the parent's parameters.
+    /// Mean squared distance to the parents' parameters.
     pub distance: f64,
-    /// Rate of the actor's Adam.
+    /// Rate of the actors' Adam.
     pub actor_rate: f32,
-    /// Seconds of rollout, gradient steps and discriminator.
+    /// Seconds of rollout, gradient steps and discriminators.
     pub secs: [f32; 3],
 }
 
 impl Training {
-    /// Starts a run from random parameters or from the parent's. `demonstrations` are the skill's own clips and those that
-    /// episodes may start from besides.
+    /// Starts a run.
     #[must_use]
-    pub fn new(
-        recipe: Recipe,
-        model: &Model,
-        normalisers: Normalisers,
-        (demonstrations, start_demonstrations): (Demonstrations, Option<Demonstrations>),
-        parent: Option<Parent>,
-        seed: u64,
-    ) -> Self {
-        let mut rng = Rng::new(seed, 1);
-        let mut hidden = vec![CRITIC_INPUT_LEN];
-        hidden.extend_from_slice(&recipe.ppo.critic_hidden);
-        hidden.push(1);
-        let (actor, critic) = match &parent {
-            Some(parent) if parent.critic.sizes() == hidden => (parent.actor.clone(), parent.critic.clone()),
-            Some(parent) => (parent.actor.clone(), Network::new(&hidden, 0.1, &mut rng)),
-            None => {
-                let sizes = [POLICY_INPUT_LEN, POLICY_HIDDEN[0], POLICY_HIDDEN[1], DOF_COUNT];
-                (Network::new(&sizes, 0.01, &mut rng), Network::new(&hidden, 0.1, &mut rng))
-            }
-        };
-        let frozen = parent.as_ref().map(|p| p.actor.clone());
-        let mut learner = Learner::new(recipe.ppo.clone(), actor, critic, frozen, rng);
-        learner.along_line = recipe.edge;
-        let discriminator = DiscriminatorLearner::new(recipe.discriminator.clone(), None, seed, 2);
-        let (judge, parent_demonstrations) = match parent {
-            Some(p) => (Some(p.discriminator), Some(p.demonstrations)),
-            None => (None, None),
-        };
-        let parent_discriminator = judge
-            .filter(|_| recipe.edge)
-            .map(|d| DiscriminatorLearner::new(recipe.discriminator.clone(), Some(d), seed, 3));
-        let (steps, count) = (recipe.environment.steps, recipe.environment.characters);
+    pub fn new(recipe: Recipe, model: &Model, normalisers: Normalisers, parts: Parts, seed: u64) -> Self {
+        let Parts { course, learner, judges, start_demonstrations } = parts;
+        let shape = (recipe.environment.steps, recipe.environment.characters);
         let (low, high) = model.joint_limits();
         let scaling = ActionScaling::from_joint_limits(low, high).expect("a loaded model has finite limits");
+        let demonstrations = judges.demonstrations();
         let stage = Stage {
             config: &recipe.environment,
+            course: &course,
             demonstrations: &demonstrations,
             start_demonstrations: start_demonstrations.as_ref(),
             normalisers: &normalisers,
-            edge: recipe.edge,
         };
         let population = Population::new(std::slice::from_ref(model), &scaling, &stage, seed);
         Self {
-            rollout: Rollout::new(steps, count, POLICY_INPUT_LEN, DOF_COUNT),
-            judged: vec![0.0; steps * count * DISCRIMINATOR_INPUT_LEN],
-            logits: vec![0.0; steps * count],
+            rollout: Rollout::new(shape, (POLICY_INPUT_LEN, stage.critic_inputs()), DOF_COUNT),
+            judged: vec![0.0; shape.0 * shape.1 * DISCRIMINATOR_INPUT_LEN],
             samples: 0,
             recipe,
             learner,
-            discriminator,
-            parent_discriminator,
+            judges,
             population,
-            demonstrations,
-            parent_demonstrations,
+            course,
             start_demonstrations,
             normalisers,
             model: model.clone(),
             scaling,
             terrain_metres: 0.0,
         }
+    }
+
+    /// Networks that learn, with their optimisers, by their roles in a checkpoint: `actor`, `discriminator`, `critic`;
+    /// where skills are trained together the first two have the skill's name before them, with a dot.
+    pub fn networks_mut(&mut self) -> Vec<(String, &mut Network, &mut Adam)> {
+        let together = !self.recipe.paths.is_empty();
+        let last = self.course.nodes().len() - 1;
+        let mut all = Vec::new();
+        let judges = self.judges.judges.iter_mut();
+        let nodes = self.course.nodes().iter().zip(self.learner.actors.iter_mut().zip(judges));
+        for (i, (node, (actor, judge))) in nodes.enumerate() {
+            let role = |what: &str| if together { format!("{}.{what}", node.name) } else { what.to_owned() };
+            if together || i == last {
+                all.push((role("actor"), &mut actor.network, &mut actor.adam));
+            }
+            if let Some(d) = &mut judge.discriminator {
+                let what = if together || i == last { "discriminator" } else { PARENT_DISCRIMINATOR };
+                all.push((role(what), &mut d.network, &mut d.adam));
+            }
+        }
+        all.push(("critic".to_owned(), &mut self.learner.critic, &mut self.learner.critic_adam));
+        all
+    }
+
+    /// What characters move along.
+    #[must_use]
+    pub fn course(&self) -> &Course {
+        &self.course
     }
 
     /// Puts the characters on the ground of the phase that is on, when it has changed.
@@ -151,12 +146,13 @@ impl Training {
             let terrain = Terrain::Wavy { height_m: metres, wavelength_m: 6.0, seed };
             grounds.push(self.model.with_terrain(terrain)?);
         }
+        let demonstrations = self.judges.demonstrations();
         let stage = Stage {
             config: &self.recipe.environment,
-            demonstrations: &self.demonstrations,
+            course: &self.course,
+            demonstrations: &demonstrations,
             start_demonstrations: self.start_demonstrations.as_ref(),
             normalisers: &self.normalisers,
-            edge: self.recipe.edge,
         };
         self.population = Population::new(&grounds, &self.scaling, &stage, self.samples);
         Ok(())
@@ -171,9 +167,7 @@ impl Training {
         let start = std::time::Instant::now();
         self.roll_out();
         let rolled = start.elapsed();
-        let task_share = self.recipe.phase_at(self.samples).1.task;
-        let style = self.judge(task_share);
-        let report = self.learn_style();
+        let (style, discriminator) = self.judge();
         let judged = start.elapsed();
         self.learner.compute_returns(&mut self.rollout);
         let update = self.learner.update(&self.rollout);
@@ -184,7 +178,7 @@ impl Training {
             style,
             reward: self.rollout.rewards.iter().sum::<f32>() / rows,
             update,
-            discriminator: report,
+            discriminator,
             distance: self.learner.distance_to_parent(),
             actor_rate: self.learner.actor_rate,
             secs: [
@@ -197,22 +191,26 @@ impl Training {
 
     fn roll_out(&mut self) {
         let n = self.rollout.characters;
+        let demonstrations = self.judges.demonstrations();
         let stage = Stage {
             config: &self.recipe.environment,
-            demonstrations: &self.demonstrations,
+            course: &self.course,
+            demonstrations: &demonstrations,
             start_demonstrations: self.start_demonstrations.as_ref(),
             normalisers: &self.normalisers,
-            edge: self.recipe.edge,
         };
+        let width = stage.critic_inputs();
         self.rollout.clear();
         for step in 0..self.rollout.steps {
             let rows = step * n..(step + 1) * n;
-            let to = rows.start * CRITIC_INPUT_LEN..rows.end * CRITIC_INPUT_LEN;
-            self.rollout.critic_inputs[to].copy_from_slice(&self.population.inputs);
-            for (i, row) in self.population.inputs.chunks_exact(CRITIC_INPUT_LEN).enumerate() {
-                let at = (rows.start + i) * POLICY_INPUT_LEN;
-                self.rollout.inputs[at..at + POLICY_INPUT_LEN].copy_from_slice(&row[..POLICY_INPUT_LEN]);
-                self.rollout.blend[rows.start + i] = row[POLICY_INPUT_LEN];
+            self.rollout.critic_inputs[rows.start * width..rows.end * width]
+                .copy_from_slice(&self.population.inputs);
+            let seen = self.population.inputs.chunks_exact(width).zip(self.population.agents());
+            for (row, (input, agent)) in rows.clone().zip(seen) {
+                let at = row * POLICY_INPUT_LEN;
+                self.rollout.inputs[at..at + POLICY_INPUT_LEN].copy_from_slice(&input[..POLICY_INPUT_LEN]);
+                self.rollout.edge[row] = agent.command.place.edge;
+                self.rollout.blend[row] = agent.command.place.t;
             }
             self.learner.act(&mut self.rollout, step);
             let actions = &self.rollout.actions[rows.start * DOF_COUNT..rows.end * DOF_COUNT];
@@ -227,33 +225,17 @@ impl Training {
         self.rollout.last_critic_inputs.copy_from_slice(&self.population.inputs);
     }
 
-    /// Mixes the style reward into the task reward that is there; returns the mean style.
-    fn judge(&mut self, task_share: f32) -> f32 {
-        self.discriminator.logits_into(&self.judged, &mut self.logits);
-        let blend = &self.rollout.blend;
-        let mut style: Vec<f32> = self.logits.iter().map(|l| style_reward(*l)).collect();
-        if let Some(parent) = &mut self.parent_discriminator {
-            parent.logits_into(&self.judged, &mut self.logits);
-            for ((style, logit), t) in style.iter_mut().zip(&self.logits).zip(blend) {
-                *style = t * *style + (1.0 - t) * style_reward(*logit);
-            }
+    /// Mixes the style reward into the task reward that is there and teaches the judges; returns the mean style.
+    fn judge(&mut self) -> (f32, DiscriminatorReport) {
+        let task_share = self.recipe.phase_at(self.samples).1.task;
+        let places = (&self.rollout.edge[..], &self.rollout.blend[..]);
+        let style = self.judges.style(&self.course, places, &self.judged);
+        let at = places.0.iter().zip(places.1).map(|(edge, t)| Place { edge: *edge, t: *t });
+        for ((reward, style), place) in self.rollout.rewards.iter_mut().zip(style).zip(at) {
+            let share = task_share * self.course.task(place);
+            *reward = share * *reward + (1.0 - share) * style;
         }
-        for (reward, style) in self.rollout.rewards.iter_mut().zip(&style) {
-            *reward = task_share * *reward + (1.0 - task_share) * style;
-        }
-        style.iter().sum::<f32>() / style.len() as f32
-    }
-
-    fn learn_style(&mut self) -> DiscriminatorReport {
-        let blend = &self.rollout.blend;
-        let chosen = |keep: &dyn Fn(f32) -> bool| -> Vec<u32> {
-            (0..blend.len() as u32).filter(|row| keep(blend[*row as usize])).collect()
-        };
-        if let (Some(parent), Some(demonstrations)) =
-            (&mut self.parent_discriminator, &self.parent_demonstrations)
-        {
-            parent.update(demonstrations, &self.judged, &chosen(&|t| t < 0.4));
-        }
-        self.discriminator.update(&self.demonstrations, &self.judged, &chosen(&|t| t > 0.6))
+        let mean = style.iter().sum::<f32>() / style.len() as f32;
+        (mean, self.judges.learn(&self.course, places, &self.judged))
     }
 }

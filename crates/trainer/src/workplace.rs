@@ -7,11 +7,11 @@ use anyhow::{Context, Result, bail};
 use physics_bridge::Model;
 
 use crate::checkpoint::{Checkpoint, write_atomically};
-use crate::clip::{ClipError, ClipFolder};
+use crate::clip::ClipFolder;
 use crate::env::{Demonstrations, Normalisers};
 use crate::recipe::Recipe;
 use crate::run::{METRICS, Run};
-use crate::training::{Parent, Training};
+use crate::training::{PARENT_DISCRIMINATOR, Training};
 
 /// Where everything a run reads and writes is.
 #[derive(Clone, Debug)]
@@ -61,7 +61,10 @@ impl Workplace {
         }
         let mut ordered: Vec<Recipe> = Vec::new();
         while !left.is_empty() {
-            let ready = |r: &Recipe| r.parent.as_ref().is_none_or(|p| ordered.iter().any(|o| o.skill == *p));
+            let ready = |r: &Recipe| {
+                let mut needed = r.parent.iter().chain(r.paths.iter().flatten());
+                needed.all(|p| ordered.iter().any(|o| o.skill == *p))
+            };
             let Some(skill) = left.values().find(|r| ready(r)).map(|r| r.skill.clone()) else {
                 let names: Vec<_> = left.keys().cloned().collect();
                 bail!(
@@ -99,20 +102,6 @@ impl Workplace {
         Ok(Demonstrations::from_clips(&clips, &self.model, &self.normalisers.frame)?)
     }
 
-    fn parent(&self, recipe: &Recipe) -> Result<Option<Parent>> {
-        let Some(skill) = &recipe.parent else { return Ok(None) };
-        let path = self.newest(skill);
-        let checkpoint = Checkpoint::load(&path)
-            .with_context(|| format!("{} starts from {skill}, which is not trained yet", recipe.skill))?;
-        let network = |role: &str| checkpoint.network(role, &path).map(|t| t.network.clone());
-        Ok(Some(Parent {
-            actor: network("actor")?,
-            critic: network("critic")?,
-            discriminator: network("discriminator")?,
-            demonstrations: self.demonstrations(&self.recipe(skill)?)?,
-        }))
-    }
-
     /// Makes a run ready: from its checkpoint with `resume` and if there is one, else from the start.
     ///
     /// # Errors
@@ -122,27 +111,11 @@ impl Workplace {
         std::fs::create_dir_all(&folder).with_context(|| format!("cannot make {}", folder.display()))?;
         let path = self.newest(&recipe.skill);
         let earlier = if resume && path.exists() { Some(Checkpoint::load(&path)?) } else { None };
-        let demonstrations = self.demonstrations(&recipe)?;
-        let parent = self.parent(&recipe)?;
-        let starts = match &recipe.environment.start.clips[..] {
-            [] => parent.as_ref().map(|p| p.demonstrations.clone()),
-            names => {
-                let clips = names.iter().map(|n| Ok((self.clips.load(n)?, 1.0)));
-                let clips = clips.collect::<Result<Vec<_>, ClipError>>()?;
-                Some(Demonstrations::from_clips(&clips, &self.model, &self.normalisers.frame)?)
-            }
-        };
         // A resumed run must not meet the same episodes again.
         let seed_now = seed.wrapping_add(earlier.as_ref().map_or(0, |c| c.progress.samples));
         let text = toml::to_string(&recipe).context("cannot write the recipe")?;
-        let mut training = Training::new(
-            recipe,
-            &self.model,
-            self.normalisers.clone(),
-            (demonstrations, starts),
-            parent,
-            seed_now,
-        );
+        let parts = self.parts(&recipe, seed_now)?;
+        let mut training = Training::new(recipe, &self.model, self.normalisers.clone(), parts, seed_now);
         let metrics = folder.join("metrics.csv");
         if earlier.is_none() || !metrics.exists() {
             write_atomically(&folder.join("seed.txt"), format!("{seed}\n").as_bytes())?;
@@ -159,18 +132,12 @@ impl Workplace {
 
 /// Puts a checkpoint's networks into a training; returns the seconds spent before.
 fn restore(training: &mut Training, checkpoint: &Checkpoint, path: &Path) -> Result<f64> {
-    let mut targets = vec![
-        ("actor", &mut training.learner.actor, &mut training.learner.actor_adam),
-        ("critic", &mut training.learner.critic, &mut training.learner.critic_adam),
-        ("discriminator", &mut training.discriminator.network, &mut training.discriminator.adam),
-    ];
-    if let Some(parent) = &mut training.parent_discriminator
-        && checkpoint.networks.contains_key("parent_discriminator")
-    {
-        targets.push(("parent_discriminator", &mut parent.network, &mut parent.adam));
-    }
-    for (role, network, adam) in targets {
-        let trained = checkpoint.network(role, path)?;
+    for (role, network, adam) in training.networks_mut() {
+        // What a parent's style is like can be learned anew.
+        if role == PARENT_DISCRIMINATOR && !checkpoint.networks.contains_key(&role) {
+            continue;
+        }
+        let trained = checkpoint.network(&role, path)?;
         if trained.network.sizes() != network.sizes() {
             bail!(
                 "{}: expected a {role} of sizes {:?}, found {:?}",

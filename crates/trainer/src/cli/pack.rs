@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use anyhow::{Context, Result};
 use clap::Args;
 use physics_bridge::Model;
-use trainer::checkpoint::write_atomically;
+use trainer::checkpoint::{Checkpoint, write_atomically};
 use trainer::env::Normalisers;
 use trainer::pack::{Ingredient, PackPlan, bind};
 
@@ -34,14 +34,20 @@ pub(crate) fn run(
     a: &Arguments,
 ) -> Result<()> {
     let mut plan = PackPlan::load(&a.plan)?;
+    let joint = plan.joint.as_ref().map(|run| checkpoint(run)).filter(|path| path.exists());
+    let joint = joint.map(|path| Checkpoint::load(&path).map(|loaded| (loaded, path))).transpose()?;
+    let together = |skill: &str| joint.as_ref().filter(|(loaded, _)| Ingredient::is_in(skill, loaded));
     if a.partial || !a.without.is_empty() {
-        let left_out =
-            |skill: &str| a.without.iter().any(|w| w == skill) || (a.partial && !checkpoint(skill).exists());
+        let trained = |skill: &str| together(skill).is_some() || checkpoint(skill).exists();
+        let left_out = |skill: &str| a.without.iter().any(|w| w == skill) || (a.partial && !trained(skill));
         plan = plan.only(|skill| !left_out(skill));
     }
     let mut ingredients = Vec::new();
     for policy in &plan.policies {
-        ingredients.push(Ingredient::load(&policy.name, &checkpoint(&policy.name))?);
+        ingredients.push(match together(&policy.name) {
+            Some((loaded, path)) => Ingredient::from_checkpoint(&policy.name, loaded, path)?,
+            None => Ingredient::load(&policy.name, &checkpoint(&policy.name))?,
+        });
     }
     let pack = bind(&plan, &ingredients, normalisers, model)?;
     write_atomically(&a.out, &pack.to_bytes())

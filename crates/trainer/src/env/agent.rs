@@ -8,7 +8,7 @@ use policy_core::{
 };
 
 use super::command::{Command, DT_SECS};
-use super::config::{EnvironmentConfig, Fall, Task};
+use super::config::{EnvironmentConfig, Task};
 use super::demonstrations::StartPose;
 use super::population::Stage;
 use super::reward::{RewardTerms, standing_reward, target_reward};
@@ -61,19 +61,33 @@ impl Agent {
     pub fn reset(&mut self, stage: &Stage<'_>, first: bool) {
         let config = stage.config;
         self.choose_place();
-        let start = match stage.start_demonstrations {
-            Some(other) if self.rng.chance(config.start.other) => other.draw_start(&mut self.rng),
-            _ => stage.demonstrations.draw_start(&mut self.rng),
-        };
+        self.command = Command::start(config, stage.course, &mut self.rng);
+        let start = self.draw_start(stage);
         if self.rng.chance(config.start.ragdoll) {
             self.drop_limp(stage, &start);
         } else {
             self.start_from(&start);
         }
-        let position = self.position();
-        let heading = self.heading().angle();
-        self.command = Command::start(config, stage.edge, position, heading, &mut self.rng);
+        let at = (self.position(), self.heading().angle());
+        self.command.aim(config, stage.course, at, &mut self.rng);
         self.age = if first { self.rng.index(config.episode_ticks as usize) as u32 } else { 0 };
+    }
+
+    /// A start state out of other clips, out of those around the place on the course, or out of the last node's.
+    fn draw_start(&mut self, stage: &Stage<'_>) -> StartPose {
+        let own = |node: usize| stage.demonstrations[node];
+        let node = match stage.start_demonstrations {
+            Some(other) if self.rng.chance(stage.config.start.other) => {
+                return other.draw_start(&mut self.rng);
+            }
+            None if self.rng.chance(stage.config.start.other) => self.rng.index(stage.demonstrations.len()),
+            _ if stage.config.start.along => {
+                let [from, to] = stage.course.edges()[self.command.place.edge];
+                if self.rng.chance(self.command.place.t) { to } else { from }
+            }
+            _ => stage.demonstrations.len() - 1,
+        };
+        own(node).draw_start(&mut self.rng)
     }
 
     /// Sets the character down in a random heading, lifted until nothing is in the ground.
@@ -197,12 +211,12 @@ impl Agent {
         self.history.input_into(discriminator_input);
         self.age += 1;
         let velocity = (self.position() - before) / DT_SECS;
-        let speed = self.commanded_speed(config);
+        let speed = stage.course.speed_mps(self.command.place);
         let terms = match config.task {
             Task::Target => target_reward(&self.state, velocity, self.command.target, speed),
             Task::Stand => standing_reward(&self.state),
         };
-        let done = if diverged || !self.state.is_finite() || self.has_fallen(config) {
+        let done = if diverged || !self.state.is_finite() || self.has_fallen(stage) {
             Done::Failed
         } else if self.age >= config.episode_ticks {
             Done::TimedOut
@@ -212,21 +226,16 @@ impl Agent {
         (terms, done)
     }
 
-    /// Renews target and blend weight, after the tick's reward.
+    /// Renews target and place on the course, after the tick's reward.
     pub fn advance_command(&mut self, stage: &Stage<'_>) {
         let position = self.position();
-        self.command.advance(stage.config, stage.edge, position, &mut self.rng);
+        self.command.advance(stage.config, stage.course, position, &mut self.rng);
     }
 
     /// Length of the episode so far and whether it failed.
     #[must_use]
     pub fn episode(&self, done: Done) -> Episode {
         Episode { ticks: self.age, failed: done == Done::Failed }
-    }
-
-    fn commanded_speed(&self, config: &EnvironmentConfig) -> f32 {
-        let t = self.command.blend;
-        config.parent_speed_mps + t * (config.speed_mps - config.parent_speed_mps)
     }
 
     /// Now and then a push of 0.2 s on the pelvis, in a random horizontal direction.
@@ -239,8 +248,9 @@ impl Agent {
         }
     }
 
-    fn has_fallen(&self, config: &EnvironmentConfig) -> bool {
-        config.fall == Fall::Upright && fallen(&self.state, config.fall_height)
+    fn has_fallen(&self, stage: &Stage<'_>) -> bool {
+        let factor = stage.course.fall_height(self.command.place);
+        factor > 0.0 && fallen(&self.state, factor)
     }
 }
 

@@ -32,6 +32,8 @@ pub struct Start {
     pub other: f32,
     /// Those clips; the parent's when there are none.
     pub clips: Vec<String>,
+    /// True to start in the clips of the nodes around the place on the course, not in the skill's own alone.
+    pub along: bool,
     /// Share of episodes that start limp on the ground, dropped there in a random attitude.
     pub ragdoll: f32,
 }
@@ -48,8 +50,6 @@ pub struct EnvironmentConfig {
     pub episode_ticks: u32,
     /// Speed that the skill is commanded to, metres per second.
     pub speed_mps: f32,
-    /// Speed that its parent is commanded to, metres per second.
-    pub parent_speed_mps: f32,
     /// What the task reward asks for.
     pub task: Task,
     /// When an episode fails.
@@ -62,6 +62,14 @@ pub struct EnvironmentConfig {
     pub target_secs: [f32; 2],
     /// Share of targets that lie where the character stands.
     pub stop: f32,
+    /// Share of episodes whose target goes ahead of the character, as the stick of a pad has it.
+    pub stick: f32,
+    /// Seconds in which a moving coordinate crosses an edge, least and most.
+    pub edge_sweep_secs: [f32; 2],
+    /// Share of moving coordinates that jump to where they are asked to.
+    pub jump: f32,
+    /// Seconds that the place on the course takes at least to cross an edge, as in the graph of a pack; 0 for none.
+    pub edge_secs: f32,
     /// Where episodes start.
     pub start: Start,
     /// Mean seconds between pushes of 0.2 s on the pelvis; zero for none.
@@ -77,13 +85,16 @@ impl Default for EnvironmentConfig {
             steps: 16,
             episode_ticks: 300,
             speed_mps: 1.25,
-            parent_speed_mps: 1.25,
             task: Task::Target,
             fall: Fall::Upright,
             fall_height: 1.0,
             target_metres: [1.0, 10.0],
             target_secs: [2.0, 7.0],
             stop: 0.15,
+            stick: 0.0,
+            edge_sweep_secs: [0.5, 6.0],
+            jump: 0.15,
+            edge_secs: 0.0,
             start: Start::default(),
             push_secs: 0.0,
             push_newton: 0.0,

@@ -5,6 +5,7 @@
 mod agent;
 mod command;
 mod config;
+mod course;
 mod demonstrations;
 mod population;
 mod reward;
@@ -12,6 +13,7 @@ mod reward;
 pub use agent::{Agent, Episode, PUSH_SECS, fallen};
 pub use command::{Command, DT_SECS};
 pub use config::{EnvironmentConfig, Fall, Start, Task};
+pub use course::{Course, CourseNode, Place};
 pub use demonstrations::{Demonstrations, Fitted, Normalisers, SourceError, StartPose, fit};
-pub use population::{CRITIC_INPUT_LEN, Population, PopulationReport, Stage};
+pub use population::{Population, PopulationReport, Stage};
 pub use reward::{RewardTerms, standing_reward, target_reward};

@@ -7,6 +7,7 @@ use rayon::prelude::*;
 
 use super::agent::{Agent, Episode};
 use super::config::EnvironmentConfig;
+use super::course::Course;
 use super::demonstrations::{Demonstrations, Normalisers};
 use super::reward::RewardTerms;
 use crate::Rng;
@@ -17,18 +18,23 @@ use crate::ppo::Done;
 pub struct Stage<'a> {
     /// Settings.
     pub config: &'a EnvironmentConfig,
-    /// Clips of the skill.
-    pub demonstrations: &'a Demonstrations,
+    /// What characters move along.
+    pub course: &'a Course,
+    /// Clips of the course's nodes.
+    pub demonstrations: &'a [&'a Demonstrations],
     /// Other clips, for starts.
     pub start_demonstrations: Option<&'a Demonstrations>,
     /// The graph's normalisers.
     pub normalisers: &'a Normalisers,
-    /// True when characters act with blends of parent and child.
-    pub edge: bool,
 }
 
-/// Inputs of the critic: the policy's and the blend weight.
-pub const CRITIC_INPUT_LEN: usize = POLICY_INPUT_LEN + 1;
+impl Stage<'_> {
+    /// Inputs of the critic: the policy's and the place on the course.
+    #[must_use]
+    pub fn critic_inputs(&self) -> usize {
+        POLICY_INPUT_LEN + self.course.place_len()
+    }
+}
 
 /// Sums over the episodes that ended and the ticks that passed since the last report.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -71,6 +77,7 @@ impl Population {
     #[must_use]
     pub fn new(grounds: &[Model], scaling: &ActionScaling, stage: &Stage<'_>, seed: u64) -> Self {
         let count = stage.config.characters;
+        let width = stage.critic_inputs();
         let ground = |i: usize| &grounds[i % grounds.len()];
         let agents = (0..count).map(|i| Agent::new(ground(i), Rng::new(seed, 1000 + i as u64))).collect();
         let mut population = Self {
@@ -79,11 +86,11 @@ impl Population {
             terms: vec![RewardTerms::default(); count],
             episodes: vec![None; count],
             scaling: scaling.clone(),
-            inputs: vec![0.0; count * CRITIC_INPUT_LEN],
-            inputs_after: vec![0.0; count * CRITIC_INPUT_LEN],
+            inputs: vec![0.0; count * width],
+            inputs_after: vec![0.0; count * width],
             report: PopulationReport::default(),
         };
-        let rows = population.inputs.par_chunks_exact_mut(CRITIC_INPUT_LEN);
+        let rows = population.inputs.par_chunks_exact_mut(width);
         population.agents.par_iter_mut().zip(rows).for_each(|(agent, row)| {
             agent.reset(stage, true);
             write_input(agent, stage, row);
@@ -117,14 +124,14 @@ impl Population {
         let count = self.agents.len();
         assert_eq!(actions.len(), count * DOF_COUNT, "actions of a population");
         assert_eq!(discriminator_inputs.len(), count * DISCRIMINATOR_INPUT_LEN, "discriminator inputs");
-        let scaling = &self.scaling;
+        let (scaling, width) = (&self.scaling, stage.critic_inputs());
         let outs = self
             .ends
             .par_iter_mut()
             .zip(self.terms.par_iter_mut())
             .zip(self.episodes.par_iter_mut())
-            .zip(self.inputs.par_chunks_exact_mut(CRITIC_INPUT_LEN))
-            .zip(self.inputs_after.par_chunks_exact_mut(CRITIC_INPUT_LEN))
+            .zip(self.inputs.par_chunks_exact_mut(width))
+            .zip(self.inputs_after.par_chunks_exact_mut(width))
             .zip(discriminator_inputs.par_chunks_exact_mut(DISCRIMINATOR_INPUT_LEN));
         let pairs = self.agents.par_iter_mut().zip(actions.par_chunks_exact(DOF_COUNT)).with_min_len(8);
         pairs.zip(outs).for_each(|((agent, action), (((((end, terms), episode), input), after), judged))| {
@@ -160,7 +167,7 @@ impl Population {
 }
 
 fn write_input(agent: &Agent, stage: &Stage<'_>, row: &mut [f32]) {
-    let (input, blend) = row.split_at_mut(POLICY_INPUT_LEN);
+    let (input, place) = row.split_at_mut(POLICY_INPUT_LEN);
     agent.input_into(stage, input);
-    blend[0] = agent.command.blend;
+    stage.course.place_into(agent.command.place, place);
 }

@@ -86,7 +86,7 @@ impl DiscriminatorPass {
         loss.squared_gradient = g.iter().map(|g| f64::from(*g) * f64::from(*g)).sum();
         g.iter_mut().for_each(|g| *g *= 2.0 * penalty * scale);
         self.penalty_gradient(network, real, gradient);
-        self.pass.backward(network, None, input, gradient);
+        self.pass.backward(network, None, input, gradient, None);
         loss
     }
 

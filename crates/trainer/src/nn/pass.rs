@@ -1,7 +1,8 @@
-//! Forward and backward pass of a [`Network`] over a batch of rows, alone or blended with a frozen parent.
+//! Forward and backward pass of a [`Network`] over a batch of rows, alone or blended with another.
 //!
 //! Blended, every layer is `y = (1 - t) (P x + p) + t (C x + c)` with a blend weight `t` per row: the network on the
-//! straight line between parent and child, without building it. The gradient goes to the child only.
+//! straight line between parent and child, without building it. The gradient goes to the child, and to the parent where
+//! it learns too.
 
 use super::matrix::{Shape, Write, multiply, multiply_left_transposed, multiply_right_transposed};
 use super::network::{LayerRange, Network, layer_ranges};
@@ -16,9 +17,10 @@ pub struct Pass {
     /// Gradient of the loss by the output of every layer, before its ReLU.
     deltas: Vec<Vec<f32>>,
     scratch: Vec<f32>,
+    share: Vec<f32>,
 }
 
-/// A frozen parent and the blend weight of the child in every row.
+/// A parent and the blend weight of the child in every row.
 #[derive(Clone, Copy, Debug)]
 pub struct Line<'a> {
     /// The network at blend weight 0; same sizes as the child.
@@ -34,7 +36,8 @@ impl Pass {
         let layers = layer_ranges(sizes);
         let buffers: Vec<Vec<f32>> = layers.iter().map(|l| vec![0.0; rows * l.outputs]).collect();
         let widest = layers.iter().map(|l| l.outputs.max(l.inputs)).max().unwrap_or(0);
-        Self { layers, rows, outputs: buffers.clone(), deltas: buffers, scratch: vec![0.0; rows * widest] }
+        let scratch = vec![0.0; rows * widest];
+        Self { layers, rows, outputs: buffers.clone(), deltas: buffers, share: scratch.clone(), scratch }
     }
 
     /// Output of the last forward pass of `rows` rows.
@@ -82,39 +85,50 @@ impl Pass {
     }
 
     /// Adds the gradient by the parameters of `network` to `gradient`, from the gradient by the output that the
-    /// caller wrote through [`Pass::output_and_delta`]. Takes the same arguments as the forward pass before it.
+    /// caller wrote through [`Pass::output_and_delta`]; that by the parent's parameters to `parent_gradient` if there is
+    /// a line and the parent learns. Takes the same arguments as the forward pass before it.
     ///
     /// # Panics
-    /// As [`Pass::forward`], and when `gradient` is not as long as the parameters.
+    /// As [`Pass::forward`], and when a gradient is not as long as the parameters.
     pub fn backward(
         &mut self,
         network: &Network,
         line: Option<Line<'_>>,
         input: &[f32],
         gradient: &mut [f32],
+        mut parent_gradient: Option<&mut [f32]>,
     ) {
         let rows = self.check(network, input);
         assert_eq!(gradient.len(), network.parameters.len(), "gradient of a network");
+        let same = parent_gradient.as_ref().is_none_or(|g| g.len() == network.parameters.len());
+        assert!(same, "gradient of a parent");
         for i in (0..self.layers.len()).rev() {
             let layer = &self.layers[i];
             let (before, after) = self.deltas.split_at_mut(i);
             let delta = &mut after[0][..rows * layer.outputs];
             let below = before.last_mut().map(|b| &mut b[..rows * layer.inputs]);
-            // The parent's share goes down before the blend weight scales this layer's gradient.
-            if let (Some(Line { parent, blend }), true) = (line, i > 0) {
-                let part = &mut self.scratch[..rows * layer.inputs];
-                let w = &parent.parameters[layer.weight.clone()];
-                multiply_right_transposed(part, Write::Replace, delta, w, down(rows, layer));
-                for (row, &t) in part.chunks_exact_mut(layer.inputs).zip(blend) {
-                    row.iter_mut().for_each(|v| *v *= 1.0 - t);
-                }
-            }
-            if let Some(Line { blend, .. }) = line {
-                for (row, &t) in delta.chunks_exact_mut(layer.outputs).zip(blend) {
-                    row.iter_mut().for_each(|v| *v *= t);
-                }
-            }
             let x = if i == 0 { input } else { &self.outputs[i - 1][..rows * layer.inputs] };
+            // The parent's share goes its way before the blend weight scales this layer's gradient to the child's.
+            if let Some(Line { parent, blend }) = line {
+                let share = &mut self.share[..rows * layer.outputs];
+                for ((share, delta), &t) in share
+                    .chunks_exact_mut(layer.outputs)
+                    .zip(delta.chunks_exact_mut(layer.outputs))
+                    .zip(blend)
+                {
+                    for (s, d) in share.iter_mut().zip(delta) {
+                        (*s, *d) = ((1.0 - t) * *d, t * *d);
+                    }
+                }
+                if let Some(gradient) = parent_gradient.as_deref_mut() {
+                    add_layer_gradient(gradient, layer, x, share);
+                }
+                if i > 0 {
+                    let part = &mut self.scratch[..rows * layer.inputs];
+                    let w = &parent.parameters[layer.weight.clone()];
+                    multiply_right_transposed(part, Write::Replace, share, w, down(rows, layer));
+                }
+            }
             add_layer_gradient(gradient, layer, x, delta);
             if let Some(below) = below {
                 let w = &network.parameters[layer.weight.clone()];

@@ -24,7 +24,7 @@ fn check(line_of: impl Fn() -> Option<(Network, Vec<f32>)>) {
     let mut pass = Pass::new(&SIZES, 8);
     pass.forward(&network, line, &input);
     pass.output_and_delta(8).1.copy_from_slice(&c);
-    pass.backward(&network, line, &input, &mut gradient);
+    pass.backward(&network, line, &input, &mut gradient, None);
     let mut bad = 0;
     for (i, found) in gradient.iter().enumerate() {
         let (kept, h) = (network.parameters[i], 1e-3);
@@ -51,6 +51,29 @@ fn blended_gradients_agree_with_finite_differences() {
         let mut rng = Rng::new(5, 0);
         Some((Network::new(&SIZES, 1.0, &mut rng), (0..8).map(|i| i as f32 / 7.0).collect()))
     });
+}
+
+#[test]
+fn parent_and_child_change_places_with_their_gradients() {
+    let mut rng = Rng::new(7, 0);
+    let (a, b) = (Network::new(&SIZES, 1.0, &mut rng), Network::new(&SIZES, 1.0, &mut rng));
+    let (input, c) = (batch(&mut rng, 8 * 6), batch(&mut rng, 8 * 3));
+    let t: Vec<f32> = (0..8).map(|i| i as f32 / 7.0).collect();
+    let rest: Vec<f32> = t.iter().map(|t| 1.0 - t).collect();
+    let gradients = |child: &Network, parent: &Network, blend: &[f32]| {
+        let line = Some(Line { parent, blend });
+        let mut of_child = vec![0.0; child.parameters.len()];
+        let mut of_parent = of_child.clone();
+        let mut pass = Pass::new(&SIZES, 8);
+        pass.forward(child, line, &input);
+        pass.output_and_delta(8).1.copy_from_slice(&c);
+        pass.backward(child, line, &input, &mut of_child, Some(&mut of_parent));
+        (of_child, of_parent)
+    };
+    let (forth, back) = (gradients(&a, &b, &t), gradients(&b, &a, &rest));
+    let worst = |x: &[f32], y: &[f32]| x.iter().zip(y).map(|(x, y)| (x - y).abs()).fold(0.0, f32::max);
+    assert!(worst(&forth.0, &back.1) < 1e-5 && worst(&forth.1, &back.0) < 1e-5);
+    assert!(forth.1.iter().any(|g| g.abs() > 0.1));
 }
 
 #[test]

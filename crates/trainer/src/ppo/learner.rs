@@ -48,83 +48,146 @@ impl BatchEvaluator {
     }
 }
 
-/// Actor, critic, their optimisers and buffers.
+/// A policy and its optimiser.
+#[derive(Clone, Debug)]
+pub struct Actor {
+    /// The policy.
+    pub network: Network,
+    /// Its optimiser.
+    pub adam: Adam,
+    /// Index of the actor it is pulled towards, if any.
+    pub parent: Option<usize>,
+    /// True when it stays as it is.
+    pub frozen: bool,
+}
+
+impl Actor {
+    /// A policy that learns, pulled towards its parent if it has one.
+    #[must_use]
+    pub fn learning(network: Network, parent: Option<usize>) -> Self {
+        Self { adam: Adam::new(network.parameters.len()), network, parent, frozen: false }
+    }
+
+    /// A policy that stays as it is.
+    #[must_use]
+    pub fn frozen(network: Network) -> Self {
+        Self { adam: Adam::new(network.parameters.len()), network, parent: None, frozen: true }
+    }
+}
+
+/// Actors, critic, their optimisers and buffers. Every row of a rollout acts with the blend of the two actors of an edge;
+/// an edge from an actor to itself is that actor alone.
 #[derive(Clone, Debug)]
 pub struct Learner {
     /// Hyper-parameters.
     pub config: PpoConfig,
-    /// The policy that learns.
-    pub actor: Network,
-    /// Guesses returns, scaled by `1 - gamma`, from policy inputs and the blend weight.
+    /// The policies. The last one is what a recipe of one skill trains.
+    pub actors: Vec<Actor>,
+    /// Pairs of actors that rows act between.
+    pub edges: Vec<[usize; 2]>,
+    /// Guesses returns, scaled by `1 - gamma`, from policy inputs and the place on the course.
     pub critic: Network,
-    /// The frozen policy it is pulled towards, if any.
-    pub parent: Option<Network>,
-    /// True when rows act with blends of parent and actor.
-    pub along_line: bool,
-    /// Rate of the actor's Adam now.
+    /// Rate of the actors' Adam now.
     pub actor_rate: f32,
-    /// The actor's optimiser.
-    pub actor_adam: Adam,
     /// The critic's optimiser.
     pub critic_adam: Adam,
     /// Draws actions and shuffles rows.
     pub rng: Rng,
     pub(super) lanes: Vec<Lane>,
     pub(super) order: Vec<u32>,
+    gathered: Gathered,
     actor_batch: BatchEvaluator,
     critic_batch: BatchEvaluator,
     bootstrap: Vec<f32>,
+}
+
+/// Rows of one edge, brought together for one pass.
+#[derive(Clone, Debug, Default)]
+struct Gathered {
+    rows: Vec<usize>,
+    input: Vec<f32>,
+    blend: Vec<f32>,
+    means: Vec<f32>,
 }
 
 impl Learner {
     /// A learner that starts from the given networks.
     ///
     /// # Panics
-    /// When the critic doesn't take one input more than the actor, or the parent has other sizes than the actor.
+    /// When there is no actor, actors differ in their sizes, or an edge or parent is no actor.
     #[must_use]
     pub fn new(
         config: PpoConfig,
-        actor: Network,
+        actors: Vec<Actor>,
+        edges: Vec<[usize; 2]>,
         critic: Network,
-        parent: Option<Network>,
         rng: Rng,
     ) -> Self {
-        assert_eq!(critic.inputs(), actor.inputs() + 1, "inputs of the critic");
-        assert!(parent.as_ref().is_none_or(|p| p.sizes() == actor.sizes()), "sizes of the parent");
-        let lane = Lane::new(&actor, &critic, config.minibatch.div_ceil(Lane::COUNT));
+        let first = &actors.first().expect("a learner has an actor").network;
+        assert!(actors.iter().all(|a| a.network.sizes() == first.sizes()), "sizes of the actors");
+        let named = edges.iter().flatten().copied().chain(actors.iter().filter_map(|a| a.parent));
+        assert!(named.max().is_none_or(|most| most < actors.len()), "actors of edges and parents");
+        let lane = Lane::new((&actors, &edges), &critic, config.minibatch.div_ceil(Lane::COUNT));
         Self {
             actor_rate: config.actor_rate,
-            actor_adam: Adam::new(actor.parameters.len()),
             critic_adam: Adam::new(critic.parameters.len()),
-            actor_batch: BatchEvaluator::new(actor.sizes()),
+            actor_batch: BatchEvaluator::new(first.sizes()),
             critic_batch: BatchEvaluator::new(critic.sizes()),
             lanes: vec![lane; Lane::COUNT],
             order: Vec::new(),
+            gathered: Gathered::default(),
             bootstrap: Vec::new(),
-            along_line: false,
             config,
-            actor,
+            actors,
+            edges,
             critic,
-            parent,
             rng,
         }
     }
 
-    /// Writes the mean action of every row of `input` to `means`; `blend` holds a blend weight for each.
-    pub fn means_into(&mut self, input: &[f32], blend: &[f32], means: &mut [f32]) {
-        let line = line_of(self.parent.as_ref(), self.along_line, blend);
-        self.actor_batch.evaluate(&self.actor, line, input, means);
+    /// What a recipe of one skill trains: the last actor.
+    ///
+    /// # Panics
+    /// Never: a learner has an actor.
+    #[must_use]
+    pub fn actor(&self) -> &Network {
+        &self.actors.last().expect("a learner has an actor").network
+    }
+
+    /// Writes the mean action of every row of `input` to `means`, each for its edge and blend weight.
+    ///
+    /// # Panics
+    /// When the lengths don't fit together, or an edge is not there.
+    pub fn means_into(&mut self, input: &[f32], edge: &[usize], blend: &[f32], means: &mut [f32]) {
+        let (inputs, actions) = (self.actor().inputs(), self.actor().outputs());
+        for (index, &ends) in self.edges.iter().enumerate() {
+            let Gathered { rows, input: gathered, blend: weights, means: out } = &mut self.gathered;
+            rows.clear();
+            rows.extend(edge.iter().enumerate().filter(|(_, e)| **e == index).map(|(row, _)| row));
+            gathered.clear();
+            weights.clear();
+            for &row in &*rows {
+                gathered.extend_from_slice(&input[row * inputs..(row + 1) * inputs]);
+                weights.push(blend[row]);
+            }
+            out.resize(rows.len() * actions, 0.0);
+            let (network, line) = line_of(&self.actors, ends, weights);
+            self.actor_batch.evaluate(network, line, gathered, out);
+            for (&row, mean) in rows.iter().zip(out.chunks_exact(actions)) {
+                means[row * actions..(row + 1) * actions].copy_from_slice(mean);
+            }
+        }
     }
 
     /// Draws the actions of tick `step` of a rollout whose inputs of that tick are there.
     pub fn act(&mut self, rollout: &mut Rollout, step: usize) {
         let n = rollout.characters;
-        let (inputs, actions) = (self.actor.inputs(), self.actor.outputs());
+        let (inputs, actions) = (self.actor().inputs(), self.actor().outputs());
         let rows = step * n..(step + 1) * n;
         let numbers = rows.start * actions..rows.end * actions;
         let input = &rollout.inputs[rows.start * inputs..rows.end * inputs];
-        let blend = &rollout.blend[rows];
-        self.means_into(input, blend, &mut rollout.means[numbers.clone()]);
+        let (edge, blend) = (&rollout.edge[rows.clone()], &rollout.blend[rows]);
+        self.means_into(input, edge, blend, &mut rollout.means[numbers.clone()]);
         let pairs = rollout.actions[numbers.clone()].iter_mut().zip(&rollout.means[numbers]);
         for (action, mean) in pairs {
             *action = mean + self.config.deviation * self.rng.normal();
@@ -149,17 +212,24 @@ impl Learner {
         self.bootstrap = after;
     }
 
-    /// Squared distance of the actor's parameters to its parent's; zero without one.
+    /// Mean squared distance of the actors that have a parent to its parameters; zero without one.
     #[must_use]
     pub fn distance_to_parent(&self) -> f64 {
-        self.parent.as_ref().map_or(0.0, |p| self.actor.squared_distance(p))
+        let distances = self.actors.iter().filter_map(|a| {
+            let parent = &self.actors[a.parent?].network;
+            Some(a.network.squared_distance(parent))
+        });
+        let (sum, count) = distances.fold((0.0, 0.0), |(sum, count), d| (sum + d, count + 1.0));
+        sum / f64::max(count, 1.0)
     }
 }
 
+/// The network that acts on an edge, and the other one beside it where the edge joins two.
 pub(super) fn line_of<'a>(
-    parent: Option<&'a Network>,
-    along_line: bool,
+    actors: &'a [Actor],
+    [from, to]: [usize; 2],
     blend: &'a [f32],
-) -> Option<Line<'a>> {
-    parent.filter(|_| along_line).map(|parent| Line { parent, blend })
+) -> (&'a Network, Option<Line<'a>>) {
+    let line = (from != to).then(|| Line { parent: &actors[from].network, blend });
+    (&actors[to].network, line)
 }

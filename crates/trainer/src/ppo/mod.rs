@@ -1,8 +1,8 @@
 //! Proximal policy optimisation (Schulman et al. 2017) as four verbs: [`Learner::act`], [`Rollout::record`],
 //! [`Learner::compute_returns`], [`Learner::update`]. Knows nothing of characters, clips or styles.
 //!
-//! One thing is beyond the paper: a child may be trained along the whole straight line from a frozen parent, each row
-//! acting with its own blend weight.
+//! One thing is beyond the paper: policies are trained along the straight lines between them, each row acting with its own
+//! blend of the two ends of an edge; either end may be frozen.
 
 mod config;
 mod gaussian;
@@ -12,6 +12,6 @@ mod update;
 
 pub use config::PpoConfig;
 pub use gaussian::{kl_divergence, log_probability};
-pub use learner::{BatchEvaluator, Learner};
+pub use learner::{Actor, BatchEvaluator, Learner};
 pub use rollout::{Done, Rollout};
 pub use update::UpdateReport;

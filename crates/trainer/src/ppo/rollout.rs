@@ -21,9 +21,11 @@ pub struct Rollout {
     pub characters: usize,
     /// Inputs of the policy, `[rows][inputs]`.
     pub inputs: Vec<f32>,
-    /// Blend weight every row acted with, 0 parent to 1 child.
+    /// Edge every row acted on: an index into the learner's edges.
+    pub edge: Vec<usize>,
+    /// Blend weight every row acted with: 0 at the edge's first policy, 1 at its second.
     pub blend: Vec<f32>,
-    /// Inputs of the critic, `[rows][inputs + 1]`: those of the policy and the blend weight.
+    /// Inputs of the critic, `[rows][critic inputs]`: those of the policy and where on the course it acted.
     pub critic_inputs: Vec<f32>,
     /// Actions taken, `[rows][actions]`.
     pub actions: Vec<f32>,
@@ -35,7 +37,7 @@ pub struct Rollout {
     pub done: Vec<Done>,
     /// Critic inputs after every row that timed out, and its row.
     pub cut_off: Vec<(usize, Vec<f32>)>,
-    /// Critic inputs after the last tick, `[characters][inputs + 1]`.
+    /// Critic inputs after the last tick, `[characters][critic inputs]`.
     pub last_critic_inputs: Vec<f32>,
     /// The critic's value of every row.
     pub values: Vec<f32>,
@@ -47,23 +49,28 @@ pub struct Rollout {
 }
 
 impl Rollout {
-    /// Empty buffers.
+    /// Empty buffers for policies with so many inputs and actions, and a critic with so many inputs.
     #[must_use]
-    pub fn new(steps: usize, characters: usize, inputs: usize, actions: usize) -> Self {
+    pub fn new(
+        (steps, characters): (usize, usize),
+        (inputs, critic_inputs): (usize, usize),
+        actions: usize,
+    ) -> Self {
         let rows = steps * characters;
         let scalar = vec![0.0; rows];
         Self {
             steps,
             characters,
             inputs: vec![0.0; rows * inputs],
+            edge: vec![0; rows],
             blend: vec![1.0; rows],
-            critic_inputs: vec![0.0; rows * (inputs + 1)],
+            critic_inputs: vec![0.0; rows * critic_inputs],
             actions: vec![0.0; rows * actions],
             means: vec![0.0; rows * actions],
             rewards: scalar.clone(),
             done: vec![Done::No; rows],
             cut_off: Vec::new(),
-            last_critic_inputs: vec![0.0; characters * (inputs + 1)],
+            last_critic_inputs: vec![0.0; characters * critic_inputs],
             values: scalar.clone(),
             advantages: scalar.clone(),
             returns: scalar.clone(),
@@ -134,7 +141,7 @@ mod tests {
     use super::*;
 
     fn rollout(rewards: &[f32], values: &[f32], done: &[Done]) -> Rollout {
-        let mut rollout = Rollout::new(rewards.len(), 1, 1, 1);
+        let mut rollout = Rollout::new((rewards.len(), 1), (1, 2), 1);
         rollout.rewards.copy_from_slice(rewards);
         rollout.values.copy_from_slice(values);
         rollout.done.copy_from_slice(done);
@@ -166,7 +173,7 @@ mod tests {
 
     #[test]
     fn characters_do_not_mix() {
-        let mut r = Rollout::new(2, 2, 1, 1);
+        let mut r = Rollout::new((2, 2), (1, 2), 1);
         r.rewards.copy_from_slice(&[1.0, 10.0, 2.0, 20.0]);
         r.estimate_advantages(1.0, 1.0, &[0.0, 0.0], &[]);
         assert_eq!(r.returns, [3.0, 30.0, 2.0, 20.0]);

@@ -4,7 +4,7 @@
 use rayon::prelude::*;
 
 use super::gaussian::{kl_divergence, log_probability};
-use super::learner::{Learner, line_of};
+use super::learner::{Actor, Learner, line_of};
 use super::rollout::Rollout;
 use crate::nn::{Network, Pass, clip_norm};
 
@@ -17,7 +17,7 @@ pub struct UpdateReport {
     pub value_error: f32,
     /// Share of rows whose ratio left the clip range.
     pub clipped: f32,
-    /// Norm of the actor's gradient before clipping.
+    /// Largest norm of an actor's gradient before clipping.
     pub gradient_norm: f32,
 }
 
@@ -29,7 +29,10 @@ pub(super) struct Lane {
     input: Vec<f32>,
     critic_input: Vec<f32>,
     blend: Vec<f32>,
-    actor_gradient: Vec<f32>,
+    /// Rows of each edge.
+    groups: Vec<Vec<u32>>,
+    /// One for each actor.
+    actor_gradients: Vec<Vec<f32>>,
     critic_gradient: Vec<f32>,
     sums: UpdateReport,
 }
@@ -38,51 +41,70 @@ impl Lane {
     /// Shares of a minibatch.
     pub(super) const COUNT: usize = 4;
 
-    pub(super) fn new(actor: &Network, critic: &Network, rows: usize) -> Self {
+    pub(super) fn new((actors, edges): (&[Actor], &[[usize; 2]]), critic: &Network, rows: usize) -> Self {
+        let actor = &actors[0].network;
         Self {
             actor: Pass::new(actor.sizes(), rows),
             critic: Pass::new(critic.sizes(), rows),
-            input: vec![0.0; rows * actor.inputs()],
+            input: Vec::with_capacity(rows * actor.inputs()),
             critic_input: vec![0.0; rows * critic.inputs()],
-            blend: vec![0.0; rows],
-            actor_gradient: vec![0.0; actor.parameters.len()],
+            blend: Vec::with_capacity(rows),
+            groups: vec![Vec::new(); edges.len()],
+            actor_gradients: vec![vec![0.0; actor.parameters.len()]; actors.len()],
             critic_gradient: vec![0.0; critic.parameters.len()],
             sums: UpdateReport::default(),
         }
     }
 
     fn accumulate(&mut self, shared: &Shared<'_>, rows: &[u32]) {
-        self.actor_gradient.fill(0.0);
+        self.actor_gradients.iter_mut().for_each(|g| g.fill(0.0));
         self.critic_gradient.fill(0.0);
         self.sums = UpdateReport::default();
-        let (inputs, critic_inputs) = (shared.actor.inputs(), shared.critic.inputs());
-        for (i, row) in rows.iter().map(|r| *r as usize).enumerate() {
-            let rollout = shared.rollout;
-            self.input[i * inputs..(i + 1) * inputs]
-                .copy_from_slice(&rollout.inputs[row * inputs..(row + 1) * inputs]);
-            self.critic_input[i * critic_inputs..(i + 1) * critic_inputs]
-                .copy_from_slice(&rollout.critic_inputs[row * critic_inputs..(row + 1) * critic_inputs]);
-            self.blend[i] = rollout.blend[row];
+        self.groups.iter_mut().for_each(Vec::clear);
+        for row in rows {
+            self.groups[shared.rollout.edge[*row as usize]].push(*row);
         }
-        self.actor_step(shared, rows);
+        for edge in 0..self.groups.len() {
+            self.actor_step(shared, edge);
+        }
         self.critic_step(shared, rows);
     }
 
-    fn actor_step(&mut self, shared: &Shared<'_>, rows: &[u32]) {
-        let input = &self.input[..rows.len() * shared.actor.inputs()];
-        let line = line_of(shared.parent, shared.parent.is_some(), &self.blend[..rows.len()]);
-        self.actor.forward(shared.actor, line, input);
-        let actions = shared.actor.outputs();
+    /// Gradients of the rows of one edge.
+    fn actor_step(&mut self, shared: &Shared<'_>, edge: usize) {
+        let rows = &self.groups[edge];
+        if rows.is_empty() {
+            return;
+        }
+        let [from, to] = shared.edges[edge];
+        let inputs = shared.actors[to].network.inputs();
+        self.input.clear();
+        self.blend.clear();
+        for row in rows.iter().map(|r| *r as usize) {
+            self.input.extend_from_slice(&shared.rollout.inputs[row * inputs..(row + 1) * inputs]);
+            self.blend.push(shared.rollout.blend[row]);
+        }
+        let (network, line) = line_of(shared.actors, [from, to], &self.blend);
+        self.actor.forward(network, line, &self.input);
+        let actions = network.outputs();
         let (means, deltas) = self.actor.output_and_delta(rows.len());
         let pairs = means.chunks_exact(actions).zip(deltas.chunks_exact_mut(actions));
         for (row, (mean, delta)) in rows.iter().zip(pairs) {
             shared.policy_gradient(*row as usize, mean, delta, &mut self.sums);
         }
-        self.actor.backward(shared.actor, line, input, &mut self.actor_gradient);
+        let (gradient, parent) = match self.actor_gradients.get_disjoint_mut([from, to]) {
+            Ok([parent, gradient]) => (gradient, Some(parent).filter(|_| !shared.actors[from].frozen)),
+            Err(_) => (&mut self.actor_gradients[to], None),
+        };
+        self.actor.backward(network, line, &self.input, gradient, parent.map(Vec::as_mut_slice));
     }
 
     fn critic_step(&mut self, shared: &Shared<'_>, rows: &[u32]) {
-        let input = &self.critic_input[..rows.len() * shared.critic.inputs()];
+        let inputs = shared.critic.inputs();
+        for (row, to) in rows.iter().map(|r| *r as usize).zip(self.critic_input.chunks_exact_mut(inputs)) {
+            to.copy_from_slice(&shared.rollout.critic_inputs[row * inputs..(row + 1) * inputs]);
+        }
+        let input = &self.critic_input[..rows.len() * inputs];
         self.critic.forward(shared.critic, None, input);
         let (values, deltas) = self.critic.output_and_delta(rows.len());
         for (row, (value, delta)) in rows.iter().zip(values.iter().zip(deltas)) {
@@ -90,16 +112,16 @@ impl Lane {
             self.sums.value_error += error * error;
             *delta = error * shared.scale;
         }
-        self.critic.backward(shared.critic, None, input, &mut self.critic_gradient);
+        self.critic.backward(shared.critic, None, input, &mut self.critic_gradient, None);
     }
 }
 
 /// What all lanes of a gradient step read.
 struct Shared<'a> {
     rollout: &'a Rollout,
-    actor: &'a Network,
+    actors: &'a [Actor],
+    edges: &'a [[usize; 2]],
     critic: &'a Network,
-    parent: Option<&'a Network>,
     gamma: f32,
     clip: f32,
     deviation: f32,
@@ -164,9 +186,9 @@ impl Learner {
     fn gradient_step(&mut self, rollout: &Rollout, minibatch: &[u32]) -> UpdateReport {
         let shared = Shared {
             rollout,
-            actor: &self.actor,
+            actors: &self.actors,
+            edges: &self.edges,
             critic: &self.critic,
-            parent: self.parent.as_ref().filter(|_| self.along_line),
             gamma: self.config.gamma,
             clip: self.config.clip,
             deviation: self.config.deviation,
@@ -184,20 +206,22 @@ impl Learner {
         report.add(&first.sums);
         for lane in others {
             report.add(&lane.sums);
-            add(&mut first.actor_gradient, &lane.actor_gradient);
+            for (sum, more) in first.actor_gradients.iter_mut().zip(&lane.actor_gradients) {
+                add(sum, more);
+            }
             add(&mut first.critic_gradient, &lane.critic_gradient);
         }
-        if let Some(parent) = &self.parent {
-            let pull = 2.0 * self.config.regularisation;
-            let pairs = self.actor.parameters.iter().zip(&parent.parameters);
-            for (g, (w, p)) in first.actor_gradient.iter_mut().zip(pairs) {
-                *g += pull * (w - p);
+        report.scale(1.0 / minibatch.len() as f32);
+        for (index, gradient) in first.actor_gradients.iter_mut().enumerate() {
+            pull_to_parent(&self.actors, index, self.config.regularisation, gradient);
+            let Actor { network, adam, frozen, .. } = &mut self.actors[index];
+            if !*frozen {
+                let norm = clip_norm(gradient, self.config.gradient_norm);
+                report.gradient_norm = report.gradient_norm.max(norm);
+                adam.step(&mut network.parameters, gradient, self.actor_rate, 0.0);
             }
         }
-        report.scale(1.0 / minibatch.len() as f32);
-        report.gradient_norm = clip_norm(&mut first.actor_gradient, self.config.gradient_norm);
         clip_norm(&mut first.critic_gradient, self.config.gradient_norm);
-        self.actor_adam.step(&mut self.actor.parameters, &first.actor_gradient, self.actor_rate, 0.0);
         let rate = self.config.critic_rate;
         self.critic_adam.step(&mut self.critic.parameters, &first.critic_gradient, rate, 0.0);
         report
@@ -225,6 +249,15 @@ impl UpdateReport {
         self.kl *= by;
         self.value_error *= by;
         self.clipped *= by;
+    }
+}
+
+/// Adds the gradient of `lambda |w - w_parent|^2`.
+fn pull_to_parent(actors: &[Actor], index: usize, lambda: f32, gradient: &mut [f32]) {
+    let Some(parent) = actors[index].parent else { return };
+    let pairs = actors[index].network.parameters.iter().zip(&actors[parent].network.parameters);
+    for (g, (w, p)) in gradient.iter_mut().zip(pairs) {
+        *g += 2.0 * lambda * (w - p);
     }
 }
 

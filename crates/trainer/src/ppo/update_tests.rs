@@ -30,7 +30,7 @@ fn learner(seed: u64) -> Learner {
     let mut rng = Rng::new(seed, 0);
     let actor = Network::new(&[2, 32, 1], 0.01, &mut rng);
     let critic = Network::new(&[3, 32, 1], 0.01, &mut rng);
-    Learner::new(config, actor, critic, None, rng)
+    Learner::new(config, vec![Actor::learning(actor, None)], vec![[0, 0]], critic, rng)
 }
 
 /// One iteration; returns the mean reward.
@@ -75,7 +75,7 @@ fn train(seed: u64, iterations: usize) -> (f32, f32, Learner) {
     let mut learner = learner(seed);
     let mut rng = Rng::new(seed, 1);
     let mut carts: Vec<Cart> = (0..CHARACTERS).map(|_| Cart::new(&mut rng)).collect();
-    let mut rollout = Rollout::new(STEPS, CHARACTERS, 2, 1);
+    let mut rollout = Rollout::new((STEPS, CHARACTERS), (2, 3), 1);
     let first = iterate(&mut learner, &mut carts, &mut rollout, &mut rng);
     let last = (1..iterations).map(|_| iterate(&mut learner, &mut carts, &mut rollout, &mut rng)).last();
     (first, last.unwrap_or(first), learner)
@@ -90,15 +90,15 @@ fn a_tiny_environment_is_solved() {
 #[test]
 fn a_seed_repeats_itself_bit_by_bit() {
     let (a, b) = (train(2, 3).2, train(2, 3).2);
-    assert_eq!(a.actor, b.actor);
+    assert_eq!(a.actor(), b.actor());
     assert_eq!(a.critic, b.critic);
-    assert_ne!(a.actor, train(3, 3).2.actor);
+    assert_ne!(a.actor(), train(3, 3).2.actor());
 }
 
 #[test]
 fn one_thread_gives_what_many_give() {
     let pool = rayon::ThreadPoolBuilder::new().num_threads(1).build().unwrap();
-    assert_eq!(pool.install(|| train(4, 2).2).actor, train(4, 2).2.actor);
+    assert_eq!(pool.install(|| train(4, 2).2).actor(), train(4, 2).2.actor());
 }
 
 #[test]
@@ -106,10 +106,17 @@ fn a_strong_pull_keeps_a_child_at_its_parent() {
     let distance = |regularisation: f32| {
         let mut learner = learner(5);
         learner.config.regularisation = regularisation;
-        learner.parent = Some(learner.actor.clone());
+        let parent = learner.actor().clone();
+        learner = Learner::new(
+            learner.config,
+            vec![Actor::frozen(parent.clone()), Actor::learning(parent, Some(0))],
+            vec![[1, 1]],
+            learner.critic,
+            learner.rng,
+        );
         let mut rng = Rng::new(5, 1);
         let mut carts: Vec<Cart> = (0..CHARACTERS).map(|_| Cart::new(&mut rng)).collect();
-        let mut rollout = Rollout::new(STEPS, CHARACTERS, 2, 1);
+        let mut rollout = Rollout::new((STEPS, CHARACTERS), (2, 3), 1);
         for _ in 0..20 {
             iterate(&mut learner, &mut carts, &mut rollout, &mut rng);
         }

@@ -1,0 +1,218 @@
+//! What a population moves along: nodes, each with a policy of its own, and paths through them. A place on a course is
+//! an edge and a blend weight, as in the graph of a pack.
+
+use super::config::{EnvironmentConfig, Fall};
+use crate::Rng;
+
+/// A node of a course.
+#[derive(Clone, Debug, PartialEq)]
+pub struct CourseNode {
+    /// Name of its skill.
+    pub name: String,
+    /// Speed that its policy is commanded to, metres per second.
+    pub speed_mps: f32,
+    /// Factor on the heights of the fall rule; zero where low is right.
+    pub fall_height: f32,
+    /// How often episodes rest at it, beside the other nodes of a path.
+    pub share: f32,
+    /// Factor on the weight of the task reward.
+    pub task: f32,
+}
+
+impl CourseNode {
+    /// The node of a skill with these settings.
+    #[must_use]
+    pub fn new(name: &str, config: &EnvironmentConfig, share: f32) -> Self {
+        let fall_height = if config.fall == Fall::Never { 0.0 } else { config.fall_height };
+        Self { name: name.into(), speed_mps: config.speed_mps, fall_height, share, task: 1.0 }
+    }
+}
+
+/// Nodes, paths and the edges under them.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Course {
+    nodes: Vec<CourseNode>,
+    paths: Vec<Vec<usize>>,
+    edges: Vec<[usize; 2]>,
+}
+
+/// A place on a course.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Place {
+    /// Index of the edge.
+    pub edge: usize,
+    /// Blend weight: 0 at the edge's first node, 1 at its second.
+    pub t: f32,
+}
+
+impl Course {
+    /// A course along these paths. A path of one node is that node alone.
+    ///
+    /// # Panics
+    /// When there is no path, a path is empty, or names a node that is not there.
+    #[must_use]
+    pub fn new(nodes: Vec<CourseNode>, paths: Vec<Vec<usize>>) -> Self {
+        assert!(!paths.is_empty(), "a course has a path");
+        assert!(paths.iter().flatten().all(|n| *n < nodes.len()), "nodes of the paths");
+        let mut edges: Vec<[usize; 2]> = Vec::new();
+        for path in &paths {
+            let alone = [path[0], *path.last().expect("a path has nodes")];
+            let joined = path.windows(2).map(|p| [p[0], p[1]]);
+            for edge in joined.chain((path.len() == 1).then_some(alone)) {
+                if !edges.contains(&edge) {
+                    edges.push(edge);
+                }
+            }
+        }
+        Self { nodes, paths, edges }
+    }
+
+    /// Nodes, by index.
+    #[must_use]
+    pub fn nodes(&self) -> &[CourseNode] {
+        &self.nodes
+    }
+
+    /// Edges, by index.
+    #[must_use]
+    pub fn edges(&self) -> &[[usize; 2]] {
+        &self.edges
+    }
+
+    /// Nodes of a path.
+    ///
+    /// # Panics
+    /// When there is no such path.
+    #[must_use]
+    pub fn path(&self, path: usize) -> &[usize] {
+        &self.paths[path]
+    }
+
+    /// Number of paths.
+    #[must_use]
+    pub fn paths(&self) -> usize {
+        self.paths.len()
+    }
+
+    /// Greatest coordinate of a path.
+    #[must_use]
+    pub fn end(&self, path: usize) -> f32 {
+        (self.paths[path].len() - 1) as f32
+    }
+
+    /// The place of a coordinate of a path, clamped to it.
+    #[must_use]
+    pub fn place(&self, path: usize, coordinate: f32) -> Place {
+        let nodes = &self.paths[path];
+        let segment = (coordinate.max(0.0) as usize).min(nodes.len().saturating_sub(2));
+        let ends = [nodes[segment], nodes[(segment + 1).min(nodes.len() - 1)]];
+        let edge = self.edges.iter().position(|e| *e == ends).unwrap_or_default();
+        let t = if ends[0] == ends[1] { 1.0 } else { (coordinate - segment as f32).clamp(0.0, 1.0) };
+        Place { edge, t }
+    }
+
+    /// A random coordinate of a path: half of them at a node, by the nodes' shares, half anywhere.
+    pub fn draw(&self, path: usize, rng: &mut Rng) -> f32 {
+        let nodes = &self.paths[path];
+        if rng.chance(0.5) {
+            return rng.uniform() * self.end(path);
+        }
+        let total: f32 = nodes.iter().map(|n| self.nodes[*n].share).sum();
+        let mut left = rng.uniform() * total;
+        let drawn = nodes.iter().position(|n| {
+            left -= self.nodes[*n].share;
+            left < 0.0
+        });
+        drawn.unwrap_or(nodes.len() - 1) as f32
+    }
+
+    /// Commanded speed, metres per second.
+    #[must_use]
+    pub fn speed_mps(&self, place: Place) -> f32 {
+        self.between(place, |node| node.speed_mps)
+    }
+
+    /// Factor on the weight of the task reward.
+    #[must_use]
+    pub fn task(&self, place: Place) -> f32 {
+        self.between(place, |node| node.task)
+    }
+
+    /// Factor on the heights of the fall rule; zero inside an edge with an end where low is right.
+    #[must_use]
+    pub fn fall_height(&self, place: Place) -> f32 {
+        let ends = self.edges[place.edge].map(|node| self.nodes[node].fall_height);
+        let inside = place.t > 0.0 && place.t < 1.0;
+        if inside && ends.contains(&0.0) { 0.0 } else { self.between(place, |node| node.fall_height) }
+    }
+
+    /// Blend weight of a node.
+    #[must_use]
+    pub fn weight(&self, place: Place, node: usize) -> f32 {
+        let [from, to] = self.edges[place.edge];
+        let part = |end: usize, weight: f32| if end == node { weight } else { 0.0 };
+        if from == to { part(to, 1.0) } else { part(from, 1.0 - place.t) + part(to, place.t) }
+    }
+
+    fn between(&self, place: Place, of: impl Fn(&CourseNode) -> f32) -> f32 {
+        let [from, to] = self.edges[place.edge].map(|node| of(&self.nodes[node]));
+        from + place.t * (to - from)
+    }
+
+    /// Numbers that tell a critic the place: the blend weight, or on a course of more than two nodes that of each.
+    #[must_use]
+    pub fn place_len(&self) -> usize {
+        if self.nodes.len() <= 2 { 1 } else { self.nodes.len() }
+    }
+
+    /// Writes the numbers of [`Course::place_len`].
+    pub fn place_into(&self, place: Place, out: &mut [f32]) {
+        match out {
+            [one] => *one = place.t,
+            weights => weights.iter_mut().enumerate().for_each(|(i, w)| *w = self.weight(place, i)),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn node(name: &str, speed_mps: f32) -> CourseNode {
+        CourseNode { name: name.into(), speed_mps, fall_height: 1.0, share: 1.0, task: 1.0 }
+    }
+
+    fn course() -> Course {
+        let nodes = vec![node("walk", 1.0), node("idle", 0.0), node("run", 3.0), node("crawl", 0.2)];
+        Course::new(nodes, vec![vec![1, 0, 2], vec![1, 0, 3]])
+    }
+
+    #[test]
+    fn paths_share_their_edges() {
+        let course = course();
+        assert_eq!(course.edges(), [[1, 0], [0, 2], [0, 3]]);
+        assert_eq!(course.place(0, 0.25), course.place(1, 0.25));
+        assert_eq!(course.place(1, 9.0), Place { edge: 2, t: 1.0 });
+        assert!((course.speed_mps(course.place(0, 1.5)) - 2.0).abs() < 1e-6);
+    }
+
+    #[test]
+    fn weights_of_a_place_sum_to_one() {
+        let course = course();
+        let mut weights = vec![0.0; course.place_len()];
+        for i in 0..=20 {
+            course.place_into(course.place(1, i as f32 * 0.1), &mut weights);
+            assert!((weights.iter().sum::<f32>() - 1.0).abs() < 1e-6, "{weights:?}");
+        }
+        assert_eq!(weights, [0.0, 0.0, 0.0, 1.0]);
+    }
+
+    #[test]
+    fn a_path_of_one_node_is_that_node() {
+        let course = Course::new(vec![node("walk", 1.0), node("roll", 0.5)], vec![vec![1]]);
+        let place = course.place(0, 0.0);
+        assert_eq!((course.edges()[place.edge], place.t), ([1, 1], 1.0));
+        assert_eq!((course.speed_mps(place), course.weight(place, 0)), (0.5, 0.0));
+        assert_eq!(course.draw(0, &mut Rng::new(1, 1)), 0.0);
+    }
+}

@@ -1,0 +1,178 @@
+//! What a run starts from: the networks, clips and course of a recipe, put together from the checkpoints of its parents.
+
+use anyhow::{Context, Result, ensure};
+use policy_core::{DOF_COUNT, POLICY_INPUT_LEN};
+
+use crate::Rng;
+use crate::amp::DiscriminatorLearner;
+use crate::checkpoint::Checkpoint;
+use crate::clip::ClipError;
+use crate::env::{Course, CourseNode, Demonstrations};
+use crate::nn::Network;
+use crate::ppo::{Actor, Learner};
+use crate::recipe::Recipe;
+use crate::style::{Judge, Judges};
+use crate::training::{POLICY_HIDDEN, Parts};
+use crate::workplace::Workplace;
+
+/// How often episodes of an edge rest at the parent and at the child.
+const EDGE_SHARES: [f32; 2] = [0.3, 0.7];
+
+/// A skill that is trained already.
+struct Skill {
+    recipe: Recipe,
+    actor: Network,
+    critic: Network,
+    discriminator: Network,
+    demonstrations: Demonstrations,
+}
+
+impl Workplace {
+    /// What a recipe starts from.
+    pub(crate) fn parts(&self, recipe: &Recipe, seed: u64) -> Result<Parts> {
+        if recipe.paths.is_empty() { self.skill_parts(recipe, seed) } else { self.joint_parts(recipe, seed) }
+    }
+
+    fn skill(&self, name: &str, needed_by: &str) -> Result<Skill> {
+        let path = self.newest(name);
+        let checkpoint = Checkpoint::load(&path)
+            .with_context(|| format!("{needed_by} starts from {name}, which is not trained yet"))?;
+        let network = |role: &str| checkpoint.network(role, &path).map(|t| t.network.clone());
+        let recipe = self.recipe(name)?;
+        Ok(Skill {
+            actor: network("actor")?,
+            critic: network("critic")?,
+            discriminator: network("discriminator")?,
+            demonstrations: self.demonstrations(&recipe)?,
+            recipe,
+        })
+    }
+
+    /// One skill: from random parameters, or from its parent's and pulled towards them.
+    fn skill_parts(&self, recipe: &Recipe, seed: u64) -> Result<Parts> {
+        let mut rng = Rng::new(seed, 1);
+        let mut nodes = vec![CourseNode::new(&recipe.skill, &recipe.environment, EDGE_SHARES[1])];
+        let learning = DiscriminatorLearner::new(recipe.discriminator.clone(), None, seed, 2);
+        let own = Judge { demonstrations: self.demonstrations(recipe)?, discriminator: Some(learning) };
+        let mut start_demonstrations = self.start_clips(recipe)?;
+        let (actors, critic, judges, path) = match &recipe.parent {
+            None => {
+                let sizes = [POLICY_INPUT_LEN, POLICY_HIDDEN[0], POLICY_HIDDEN[1], DOF_COUNT];
+                let actor = Actor::learning(Network::new(&sizes, 0.01, &mut rng), None);
+                let critic = Network::new(&critic_sizes(recipe, 1), 0.1, &mut rng);
+                (vec![actor], critic, vec![own], vec![0])
+            }
+            Some(parent) => {
+                let parent = self.skill(parent, &recipe.skill)?;
+                let before = &parent.recipe;
+                nodes.insert(0, CourseNode::new(&before.skill, &before.environment, EDGE_SHARES[0]));
+                let actors =
+                    vec![Actor::frozen(parent.actor.clone()), Actor::learning(parent.actor, Some(0))];
+                let sizes = critic_sizes(recipe, 1);
+                let fits = parent.critic.sizes() == sizes;
+                let critic = if fits { parent.critic } else { Network::new(&sizes, 0.1, &mut rng) };
+                let config = recipe.discriminator.clone();
+                let known = Some(parent.discriminator);
+                let discriminator = recipe.edge.then(|| DiscriminatorLearner::new(config, known, seed, 3));
+                start_demonstrations.get_or_insert_with(|| parent.demonstrations.clone());
+                let judge = Judge { demonstrations: parent.demonstrations, discriminator };
+                (actors, critic, vec![judge, own], if recipe.edge { vec![0, 1] } else { vec![1] })
+            }
+        };
+        let course = Course::new(nodes, vec![path]);
+        let learner = Learner::new(recipe.ppo.clone(), actors, course.edges().to_vec(), critic, rng);
+        Ok(Parts { course, learner, judges: Judges::new(judges), start_demonstrations })
+    }
+
+    /// All skills of some paths together, none of them frozen.
+    fn joint_parts(&self, recipe: &Recipe, seed: u64) -> Result<Parts> {
+        let mut names: Vec<&String> = Vec::new();
+        for name in recipe.paths.iter().flatten() {
+            if !names.contains(&name) {
+                names.push(name);
+            }
+        }
+        let index = |name: &String| names.iter().position(|n| *n == name);
+        let (mut nodes, mut actors, mut judges, mut root) = (Vec::new(), Vec::new(), Vec::new(), None);
+        for (i, name) in names.iter().enumerate() {
+            let skill = self.skill(name, &recipe.skill)?;
+            let task = skill.recipe.phases.last().map_or(1.0, |phase| phase.task);
+            nodes.push(CourseNode { task, ..CourseNode::new(name, &skill.recipe.environment, 1.0) });
+            actors.push(Actor::learning(skill.actor, skill.recipe.parent.as_ref().and_then(index)));
+            let known = Some(skill.discriminator);
+            let learner = DiscriminatorLearner::new(recipe.discriminator.clone(), known, seed, 10 + i as u64);
+            judges.push(Judge { demonstrations: skill.demonstrations, discriminator: Some(learner) });
+            if skill.recipe.parent.is_none() {
+                root = Some(skill.critic);
+            }
+        }
+        let paths = recipe.paths.iter().map(|p| p.iter().filter_map(index).collect()).collect();
+        let course = Course::new(nodes, paths);
+        let sizes = critic_sizes(recipe, course.place_len());
+        let mut rng = Rng::new(seed, 1);
+        let critic = match root {
+            Some(root) if root.sizes()[1..] == sizes[1..] => widened(&root, course.place_len()),
+            _ => Network::new(&sizes, 0.1, &mut rng),
+        };
+        ensure!(critic.sizes() == sizes, "expected a critic of sizes {sizes:?}, found {:?}", critic.sizes());
+        let learner = Learner::new(recipe.ppo.clone(), actors, course.edges().to_vec(), critic, rng);
+        let start_demonstrations = self.start_clips(recipe)?;
+        Ok(Parts { course, learner, judges: Judges::new(judges), start_demonstrations })
+    }
+
+    /// Clips that a recipe names for starts.
+    fn start_clips(&self, recipe: &Recipe) -> Result<Option<Demonstrations>> {
+        let names = &recipe.environment.start.clips;
+        if names.is_empty() {
+            return Ok(None);
+        }
+        let clips = names.iter().map(|n| Ok((self.clips.load(n)?, 1.0)));
+        let clips = clips.collect::<Result<Vec<_>, ClipError>>()?;
+        Ok(Some(Demonstrations::from_clips(&clips, &self.model, &self.normalisers.frame)?))
+    }
+}
+
+fn critic_sizes(recipe: &Recipe, place_len: usize) -> Vec<usize> {
+    let mut sizes = vec![POLICY_INPUT_LEN + place_len];
+    sizes.extend_from_slice(&recipe.ppo.critic_hidden);
+    sizes.push(1);
+    sizes
+}
+
+/// A critic of one blend weight, which was always 1, as a critic of the weights of many nodes, which sum to 1: every
+/// node's weight does what the one did.
+fn widened(critic: &Network, place_len: usize) -> Network {
+    let mut sizes = critic.sizes().to_vec();
+    sizes[0] = POLICY_INPUT_LEN + place_len;
+    let mut wide = Network::zeros(&sizes);
+    let (from, to) = (critic.layers(), wide.layers());
+    let policy = POLICY_INPUT_LEN * from[0].outputs;
+    let old = &critic.parameters[from[0].weight.clone()];
+    let new = &mut wide.parameters[to[0].weight.clone()];
+    new[..policy].copy_from_slice(&old[..policy]);
+    new[policy..].chunks_exact_mut(from[0].outputs).for_each(|row| row.copy_from_slice(&old[policy..]));
+    let rest = wide.parameters.len() - to[0].weight.end;
+    wide.parameters[to[0].weight.end..].copy_from_slice(&critic.parameters[critic.parameters.len() - rest..]);
+    wide
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::nn::Pass;
+
+    #[test]
+    fn a_widened_critic_says_what_it_said() {
+        let mut rng = Rng::new(1, 0);
+        let critic = Network::new(&[POLICY_INPUT_LEN + 1, 8, 1], 1.0, &mut rng);
+        let wide = widened(&critic, 3);
+        let mut input: Vec<f32> = (0..POLICY_INPUT_LEN).map(|_| rng.normal()).collect();
+        let mut of_wide = input.clone();
+        input.push(1.0);
+        of_wide.extend_from_slice(&[0.25, 0.0, 0.75]);
+        let (mut a, mut b) = (Pass::new(critic.sizes(), 1), Pass::new(wide.sizes(), 1));
+        a.forward(&critic, None, &input);
+        b.forward(&wide, None, &of_wide);
+        assert!((a.output(1)[0] - b.output(1)[0]).abs() < 1e-4);
+    }
+}
