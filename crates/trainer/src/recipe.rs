@@ -207,7 +207,9 @@ impl Recipe {
                 format!("{:?}", env.target_secs),
             ),
             (
-                [env.stop, env.stick, env.jump, env.start.other, env.start.ragdoll].into_iter().all(unit),
+                [env.stop, env.stick, env.jump, env.start.other, env.start.anywhere, env.start.ragdoll]
+                    .into_iter()
+                    .all(unit),
                 "environment.stop, stick, jump and start",
                 "shares in [0, 1]",
                 format!("{}, {}, {} and {:?}", env.stop, env.stick, env.jump, env.start),

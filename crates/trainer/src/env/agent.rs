@@ -62,32 +62,37 @@ impl Agent {
         let config = stage.config;
         self.choose_place();
         self.command = Command::start(config, stage.course, &mut self.rng);
-        let start = self.draw_start(stage);
-        if self.rng.chance(config.start.ragdoll) {
-            self.drop_limp(stage, &start);
-        } else {
-            self.start_from(&start);
+        let limp = self.rng.chance(config.start.ragdoll);
+        for _ in 0..START_TRIES {
+            let start = self.draw_start(stage);
+            if limp {
+                self.drop_limp(stage, &start);
+            } else {
+                self.start_from(&start);
+            }
+            if !self.has_fallen(stage) {
+                break;
+            }
         }
         let at = (self.position(), self.heading().angle());
         self.command.aim(config, stage.course, at, &mut self.rng);
         self.age = if first { self.rng.index(config.episode_ticks as usize) as u32 } else { 0 };
     }
 
-    /// A start state out of other clips, out of those around the place on the course, or out of the last node's.
+    /// A start state out of other clips, those of any node, those around the place on the course, or the last node's.
     fn draw_start(&mut self, stage: &Stage<'_>) -> StartPose {
-        let own = |node: usize| stage.demonstrations[node];
+        let start = &stage.config.start;
+        let nodes = stage.demonstrations.len();
         let node = match stage.start_demonstrations {
-            Some(other) if self.rng.chance(stage.config.start.other) => {
-                return other.draw_start(&mut self.rng);
-            }
-            None if self.rng.chance(stage.config.start.other) => self.rng.index(stage.demonstrations.len()),
-            _ if stage.config.start.along => {
+            Some(other) if self.rng.chance(start.other) => return other.draw_start(&mut self.rng),
+            _ if self.rng.chance(start.anywhere) => self.rng.index(nodes),
+            _ if start.along => {
                 let [from, to] = stage.course.edges()[self.command.place.edge];
                 if self.rng.chance(self.command.place.t) { to } else { from }
             }
-            _ => stage.demonstrations.len() - 1,
+            _ => nodes - 1,
         };
-        own(node).draw_start(&mut self.rng)
+        stage.demonstrations[node].draw_start(&mut self.rng)
     }
 
     /// Sets the character down in a random heading, lifted until nothing is in the ground.
@@ -253,6 +258,9 @@ impl Agent {
         factor > 0.0 && fallen(&self.state, factor)
     }
 }
+
+/// Draws of a start state until one is none that fails at once; the last one is taken as it is.
+const START_TRIES: usize = 4;
 
 /// Length of a push, seconds.
 pub const PUSH_SECS: f32 = 0.2;

@@ -77,7 +77,8 @@ impl Command {
                 }
             }
         }
-        let most = if config.edge_secs > 0.0 { DT_SECS / config.edge_secs } else { f32::INFINITY };
+        let secs = course.edge_secs(self.place);
+        let most = if secs > 0.0 { DT_SECS / secs } else { f32::INFINITY };
         self.coordinate += (self.asked - self.coordinate).clamp(-most, most);
         self.place = course.place(self.path, self.coordinate);
         self.follow_stick(course, position);
@@ -175,7 +176,10 @@ mod tests {
     fn the_place_follows_what_is_asked_no_faster_than_an_edge_allows() {
         let config =
             EnvironmentConfig { edge_secs: 1.0, jump: 1.0, stick: 1.0, ..EnvironmentConfig::default() };
-        let (course, mut rng) = (edge(), Rng::new(3, 1));
+        let nodes = [("walk", 1.25), ("idle", 0.0)].map(|(name, speed_mps)| {
+            CourseNode::new(name, &EnvironmentConfig { speed_mps, ..config.clone() }, 1.0)
+        });
+        let (course, mut rng) = (Course::new(nodes.to_vec(), vec![vec![0, 1]]), Rng::new(3, 1));
         let mut moved = 0.0;
         for _ in 0..50 {
             let mut command = Command::start(&config, &course, &mut rng);

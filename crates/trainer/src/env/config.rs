@@ -34,6 +34,8 @@ pub struct Start {
     pub clips: Vec<String>,
     /// True to start in the clips of the nodes around the place on the course, not in the skill's own alone.
     pub along: bool,
+    /// Share of episodes that start in the clips of any node of the course.
+    pub anywhere: f32,
     /// Share of episodes that start limp on the ground, dropped there in a random attitude.
     pub ragdoll: f32,
 }
@@ -68,7 +70,7 @@ pub struct EnvironmentConfig {
     pub edge_sweep_secs: [f32; 2],
     /// Share of moving coordinates that jump to where they are asked to.
     pub jump: f32,
-    /// Seconds that the place on the course takes at least to cross an edge, as in the graph of a pack; 0 for none.
+    /// Seconds that the place on the course takes at least to cross an edge of this skill, as in a pack; 0 for none.
     pub edge_secs: f32,
     /// Where episodes start.
     pub start: Start,

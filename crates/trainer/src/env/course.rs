@@ -17,6 +17,8 @@ pub struct CourseNode {
     pub share: f32,
     /// Factor on the weight of the task reward.
     pub task: f32,
+    /// Seconds that its edges take at least; the longer time of the two ends holds.
+    pub edge_secs: f32,
 }
 
 impl CourseNode {
@@ -24,7 +26,14 @@ impl CourseNode {
     #[must_use]
     pub fn new(name: &str, config: &EnvironmentConfig, share: f32) -> Self {
         let fall_height = if config.fall == Fall::Never { 0.0 } else { config.fall_height };
-        Self { name: name.into(), speed_mps: config.speed_mps, fall_height, share, task: 1.0 }
+        Self {
+            name: name.into(),
+            speed_mps: config.speed_mps,
+            fall_height,
+            share,
+            task: 1.0,
+            edge_secs: config.edge_secs,
+        }
     }
 }
 
@@ -132,6 +141,13 @@ impl Course {
         self.between(place, |node| node.speed_mps)
     }
 
+    /// Least seconds to cross the edge, 0 for no limit.
+    #[must_use]
+    pub fn edge_secs(&self, place: Place) -> f32 {
+        let [from, to] = self.edges[place.edge].map(|node| self.nodes[node].edge_secs);
+        from.max(to)
+    }
+
     /// Factor on the weight of the task reward.
     #[must_use]
     pub fn task(&self, place: Place) -> f32 {
@@ -179,7 +195,7 @@ mod tests {
     use super::*;
 
     fn node(name: &str, speed_mps: f32) -> CourseNode {
-        CourseNode { name: name.into(), speed_mps, fall_height: 1.0, share: 1.0, task: 1.0 }
+        CourseNode { name: name.into(), speed_mps, fall_height: 1.0, share: 1.0, task: 1.0, edge_secs: 0.0 }
     }
 
     fn course() -> Course {

@@ -1,6 +1,7 @@
 //! Measures of a pack, through the same controller as a game: survival along paths, reached speed, get-up, roll,
 //! pushes, distances between parameters, and how a motion looks beside its clip.
 
+mod layers;
 mod motion;
 mod paths;
 mod push;
@@ -9,6 +10,7 @@ mod skills;
 mod subject;
 mod upright;
 
+pub use layers::{LayerReport, choices, measure_layers};
 pub use motion::{MotionReport, clip_states, pose_error, watch};
 pub use paths::{measure_coordinates, measure_sweep};
 pub use push::measure_push;
@@ -32,14 +34,30 @@ pub struct Effort {
     pub drops: usize,
     /// Characters that are pushed at each force.
     pub pushed: usize,
+    /// Characters for each choice of layers.
+    pub layered: usize,
 }
 
 impl Effort {
     /// What figures are published from.
-    pub const FULL: Effort =
-        Effort { characters: 256, secs: 60.0, coordinates: 11, characters_each: 32, drops: 1000, pushed: 64 };
+    pub const FULL: Effort = Effort {
+        characters: 256,
+        secs: 60.0,
+        coordinates: 11,
+        characters_each: 32,
+        drops: 1000,
+        pushed: 64,
+        layered: 16,
+    };
 
     /// Less than a minute on two idle cores, for a first look.
-    pub const QUICK: Effort =
-        Effort { characters: 32, secs: 20.0, coordinates: 5, characters_each: 8, drops: 64, pushed: 16 };
+    pub const QUICK: Effort = Effort {
+        characters: 32,
+        secs: 20.0,
+        coordinates: 5,
+        characters_each: 8,
+        drops: 64,
+        pushed: 16,
+        layered: 1,
+    };
 }

@@ -9,8 +9,8 @@ use policy_core::{BlendMode, CharacterPack, CharacterState};
 use serde::Serialize;
 
 use super::{
-    Effort, MotionReport, UprightReport, measure_coordinates, measure_get_up, measure_push, measure_roll,
-    measure_sweep, measure_upright, pose_error, watch,
+    Effort, LayerReport, MotionReport, UprightReport, choices, measure_coordinates, measure_get_up,
+    measure_layers, measure_push, measure_roll, measure_sweep, measure_upright, pose_error, watch,
 };
 
 /// All measures of a pack.
@@ -36,6 +36,10 @@ pub struct Evaluation {
     /// By skill: how its clip moves.
     #[serde(skip_serializing_if = "BTreeMap::is_empty")]
     pub clip_motion: BTreeMap<String, MotionReport>,
+    /// By `from-to`, and in it by the layers that are half-way there: section 4.3 of the paper.
+    pub layers: BTreeMap<String, BTreeMap<String, LayerReport>>,
+    /// Share of all those cases without a fall.
+    pub layers_without_fall: f32,
     /// Squared distance of the parameters at the two ends of each edge.
     pub parameter_distance: BTreeMap<String, f64>,
 }
@@ -147,6 +151,18 @@ pub fn evaluate(
             evaluation.clip_motion.insert(node.name.clone(), MotionReport::of(clip));
         }
     }
+    note("single layers");
+    for [a, b] in graph.edges().iter().map(|e| e.nodes) {
+        for (from, to) in [(a, b), (b, a)] {
+            let measured = choices()
+                .map(|(bits, name)| (name, measure_layers(model, pack, (from, to), bits, effort.layered)));
+            let name = format!("{}-{}", graph.nodes()[from].name, graph.nodes()[to].name);
+            evaluation.layers.insert(name, measured.collect());
+        }
+    }
+    let cases: Vec<f32> =
+        evaluation.layers.values().flat_map(|e| e.values().map(|r| r.without_fall)).collect();
+    evaluation.layers_without_fall = cases.iter().sum::<f32>() / cases.len().max(1) as f32;
     note("get-up and roll");
     let rate = |success| RateReport { success, tries: effort.drops };
     evaluation.getup = measure_get_up(model, pack, "get_up", effort.drops).map(rate);
