@@ -4,7 +4,7 @@
 use std::hint::black_box;
 
 use criterion::{Criterion, criterion_group, criterion_main};
-use peers::{ACTION_LEN, Network, check, peers};
+use peers::inference::{ACTION_LEN, Network, check, peers};
 
 fn evaluate(criterion: &mut Criterion) {
     let network = Network::from_seed(1);

@@ -8,6 +8,8 @@ use std::path::{Path, PathBuf};
 use anyhow::{Context, Result, bail, ensure};
 use serde_json::Value;
 
+use crate::workspace::Workspace;
+
 /// The median of one benchmark.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Estimate {
@@ -15,6 +17,19 @@ pub struct Estimate {
     pub median_ns: f64,
     /// Elements that one iteration handles, where the benchmark says so.
     pub elements: Option<u64>,
+}
+
+/// A folder below `target` for one run's measurements, emptied first: no figure of an earlier run can be taken for one
+/// of this run.
+///
+/// # Errors
+/// When what is left of an earlier run cannot be removed.
+pub fn emptied(workspace: &Workspace, name: &str) -> Result<PathBuf> {
+    let home = workspace.target().join(name);
+    if home.exists() {
+        fs::remove_dir_all(&home).with_context(|| format!("remove {}", home.display()))?;
+    }
+    Ok(home)
 }
 
 /// The estimate of the benchmark `name` below criterion's folder.

@@ -3,7 +3,9 @@
 //! With `--json` nothing but that object goes to stdout; what cargo and criterion say goes to stderr.
 
 mod estimates;
+mod peers;
 mod policy;
+mod training;
 
 use anyhow::{Context, Result, ensure};
 use clap::{Args, Subcommand};
@@ -31,6 +33,12 @@ enum Subject {
         #[arg(long)]
         no_peers: bool,
     },
+    /// Milliseconds of a gradient step in the trainer's networks, beside two training libraries on the same networks.
+    Training {
+        /// Print one JSON object: one_thread_ms, one_thread_ratio, all_threads_ms, all_threads_ratio, threads.
+        #[arg(long)]
+        json: bool,
+    },
     /// How many characters run in real time on all cores.
     Crowd {
         /// Print one JSON object: characters_realtime, bare_mujoco_characters, policy_share.
@@ -53,6 +61,7 @@ pub fn run(workspace: &Workspace, arguments: &BenchArgs) -> Result<()> {
     setup::prepare(workspace, Purpose::Demo, true)?;
     let (json, figures) = match arguments.subject {
         Subject::Policy { json, no_peers } => (json, policy::measure(workspace, !no_peers)?),
+        Subject::Training { json } => (json, training::measure(workspace)?),
         Subject::Crowd { json } => {
             let promised = ["characters_realtime", "bare_mujoco_characters", "policy_share"];
             (json, demo_bench(workspace, "bench-crowd", &promised)?)

@@ -6,14 +6,17 @@
 //! one benchmark each.
 
 use std::path::Path;
-use std::process::{Command, Stdio};
 
-use anyhow::{Context, Result};
+use anyhow::Result;
 use serde_json::{Map, Value, json};
 
-use super::estimates::{Estimate, read, read_group};
+use super::estimates::{Estimate, emptied, read, read_group};
+use super::peers::{self, Peers, quiet};
 use crate::setup;
 use crate::workspace::{Workspace, run};
+
+/// The half of `benches/peers` that evaluates the policy.
+const PEERS: Peers = Peers { feature: "inference", bench: "peers" };
 
 /// Characters in one iteration of `batched`.
 const BATCH: u64 = 256;
@@ -23,44 +26,19 @@ const BATCH: u64 = 256;
 /// # Errors
 /// When a benchmark cannot be built or run, or a figure is missing.
 pub fn measure(workspace: &Workspace, with_peers: bool) -> Result<Map<String, Value>> {
-    // A folder of its own, emptied first: no figure of an earlier run can be taken for one of this run.
-    let home = workspace.target().join("bench-policy");
-    if home.exists() {
-        std::fs::remove_dir_all(&home).with_context(|| format!("remove {}", home.display()))?;
-    }
+    let home = emptied(workspace, "bench-policy")?;
     if with_peers {
-        build_peers(workspace)?;
+        peers::build(workspace, &PEERS)?;
     }
     let own = ["bench", "-p", "policy-core", "--bench", "policy", "--bench", "tick"];
     run(quiet(workspace.cargo().args(own).env("CRITERION_HOME", &home)))?;
     if with_peers {
         let library = setup::onnx_runtime(workspace)?;
-        let mut peers = peers(workspace, &["bench"]);
+        // One thread for everybody; some libraries would wake a pool for a job of microseconds.
+        let mut peers = peers::bench(workspace, &PEERS, 1);
         run(quiet(peers.env("CRITERION_HOME", &home).env("ORT_DYLIB_PATH", library)))?;
     }
     figures(&home)
-}
-
-/// Builds the peers ahead of all measuring, so that both halves are measured one right after the other.
-fn build_peers(workspace: &Workspace) -> Result<()> {
-    eprintln!("xtask: building the peers; the first time this takes many minutes");
-    run(quiet(&mut peers(workspace, &["bench", "--no-run"])))
-}
-
-fn peers(workspace: &Workspace, arguments: &[&str]) -> Command {
-    let mut command = workspace.cargo();
-    command
-        .args(arguments)
-        .args(["--manifest-path", "benches/peers/Cargo.toml"])
-        .env("CARGO_TARGET_DIR", workspace.target().join("peers"))
-        // One thread for everybody; some libraries would wake a pool for a job of microseconds.
-        .env("RAYON_NUM_THREADS", "1");
-    command
-}
-
-/// Sends what a command writes to stdout to stderr.
-fn quiet(command: &mut Command) -> &mut Command {
-    command.stdin(Stdio::null()).stdout(Stdio::from(std::io::stderr()))
 }
 
 /// The figures of everything that was measured below criterion's folder.

@@ -4,8 +4,8 @@ use anyhow::{Result, anyhow};
 use burn::tensor::activation::relu;
 use burn::tensor::{Device, Tensor, TensorData};
 
-use crate::Peer;
-use crate::network::Network;
+use super::Peer;
+use super::network::Network;
 
 /// The layers as weight and bias.
 pub struct BurnFlex {

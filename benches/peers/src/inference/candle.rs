@@ -3,8 +3,8 @@
 use anyhow::Result;
 use candle_core::{Device, Tensor};
 
-use crate::Peer;
-use crate::network::Network;
+use super::Peer;
+use super::network::Network;
 
 /// The layers as weight and bias.
 pub struct Candle {

@@ -4,8 +4,6 @@
 //! would ask for it; each keeps its model and buffers between calls as far as its interface allows. Nothing is
 //! measured before its answer was compared with policy-core's.
 
-#![warn(missing_docs)]
-
 mod burn_flex;
 mod candle;
 mod network;

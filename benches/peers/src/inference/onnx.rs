@@ -6,7 +6,7 @@ use tract_onnx::pb::{
     ValueInfoProto, tensor_proto, tensor_shape_proto, type_proto,
 };
 
-use crate::network::{ACTION_LEN, Network, OBSERVATION_LEN};
+use super::network::{ACTION_LEN, Network, OBSERVATION_LEN};
 
 /// The model's bytes: input `observation` of shape [1, 225], output `action` of shape [1, 28].
 pub fn model(network: &Network) -> Vec<u8> {

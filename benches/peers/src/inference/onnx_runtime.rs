@@ -6,8 +6,8 @@ use ort::session::Session;
 use ort::session::builder::GraphOptimizationLevel;
 use ort::value::TensorRef;
 
-use crate::network::{Network, OBSERVATION_LEN};
-use crate::{Peer, onnx};
+use super::network::{Network, OBSERVATION_LEN};
+use super::{Peer, onnx};
 
 /// One session, one thread, all graph optimisations.
 pub struct OnnxRuntime {

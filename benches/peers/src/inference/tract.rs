@@ -3,8 +3,8 @@
 use anyhow::Result;
 use tract_onnx::prelude::*;
 
-use crate::network::{Network, OBSERVATION_LEN};
-use crate::{Peer, onnx};
+use super::network::{Network, OBSERVATION_LEN};
+use super::{Peer, onnx};
 
 /// A state that is run again and again.
 pub struct Tract {
