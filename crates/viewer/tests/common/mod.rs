@@ -11,9 +11,13 @@ use viewer::sim::{SimConfig, Simulation};
 
 /// A world of one character that keeps its history.
 pub fn simulation() -> Simulation {
-    let pack = CharacterPack::from_bytes(assets::HUMANOID_PACK).unwrap();
+    simulation_of(Arc::new(CharacterPack::from_bytes(assets::HUMANOID_PACK).unwrap()))
+}
+
+/// The same with a pack of one's own.
+pub fn simulation_of(pack: Arc<CharacterPack>) -> Simulation {
     let config = SimConfig { history: true, ..SimConfig::default() };
-    Simulation::new(assets::HUMANOID_MJCF, Arc::new(pack), config).unwrap()
+    Simulation::new(assets::HUMANOID_MJCF, pack, config).unwrap()
 }
 
 /// The demo with one panel open.
