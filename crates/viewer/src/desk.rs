@@ -109,7 +109,10 @@ impl Desk {
         self.renderer.draw(&mut encoder, view, size, &self.scene);
         self.overlay.draw(&mut encoder, view, size, &prepared);
         self.gpu.queue.submit([encoder.finish()]);
-        self.record(app, size, &prepared);
+        // A lost device often shows here: it takes no more pictures.
+        if self.gpu.lost().is_none() {
+            self.record(app, size, &prepared);
+        }
         self.overlay.free(&mut prepared);
     }
 
@@ -120,10 +123,14 @@ impl Desk {
     pub fn picture(
         &mut self,
         app: &mut App,
-        output: egui::FullOutput,
+        mut output: egui::FullOutput,
         size: [u32; 2],
         panels: bool,
     ) -> Result<RgbaImage, GpuError> {
+        if self.gpu.lost().is_some() {
+            output.textures_delta.clear();
+            return Err(GpuError::Lost);
+        }
         let mut prepared = self.prepare(app, output);
         let picture = self.capture(size, panels.then_some(&prepared));
         self.overlay.free(&mut prepared);
@@ -211,6 +218,12 @@ impl Desk {
                 Err(error) => error.to_string(),
             });
         }
+    }
+
+    /// The humanoid that is drawn.
+    #[must_use]
+    pub fn mesh(&self) -> &SkinnedMesh {
+        self.renderer.mesh()
     }
 
     /// Ends recordings that still run, and waits until they are written.

@@ -1,6 +1,6 @@
 //! Opens an adapter: the best there is, a software one where there is none better.
 
-use std::sync::Arc;
+use std::sync::{Arc, OnceLock};
 
 /// Why nothing can be drawn.
 #[derive(Debug, thiserror::Error)]
@@ -25,6 +25,16 @@ pub enum GpuError {
     /// The device went away while a picture was read back.
     #[error("the device was lost while reading a picture back")]
     Lost,
+    /// The device went away again soon after it was opened anew.
+    #[error("the device of {adapter} was lost again within {seconds:.0} s of being opened anew: {reason}")]
+    LostAgain {
+        /// Name of the adapter.
+        adapter: String,
+        /// Seconds since the loss before.
+        seconds: f32,
+        /// What the driver said.
+        reason: String,
+    },
 }
 
 /// A device to draw with. Cloning shares it.
@@ -38,6 +48,8 @@ pub struct Gpu {
     pub adapter_name: String,
     /// True when the processor draws.
     pub is_software: bool,
+    /// Why the device is of no use any more, once it is not.
+    lost: Arc<OnceLock<String>>,
 }
 
 impl Gpu {
@@ -85,8 +97,37 @@ impl Gpu {
         }))
         .map_err(|source| GpuError::NoDevice { adapter: info.name.clone(), source })?;
         let is_software = info.device_type == wgpu::DeviceType::Cpu;
-        Ok((Self { device, queue, adapter_name: info.name, is_software }, adapter))
+        let lost = watch(&device);
+        Ok((Self { device, queue, adapter_name: info.name, is_software, lost }, adapter))
     }
+
+    /// Why the device went away, once it has: by a reset of the driver, a card that was unplugged, or for want of
+    /// memory. Whatever was made with it is of no use then.
+    #[must_use]
+    pub fn lost(&self) -> Option<&str> {
+        self.lost.get().map(String::as_str)
+    }
+}
+
+/// Notes the first thing that makes `device` useless. What is wrong with our own calls still panics.
+fn watch(device: &wgpu::Device) -> Arc<OnceLock<String>> {
+    let lost = Arc::new(OnceLock::new());
+    let note = {
+        let lost = Arc::clone(&lost);
+        move |reason: String| {
+            // Only the first reason counts: others follow from it.
+            let _ = lost.set(reason);
+        }
+    };
+    device.set_device_lost_callback({
+        let note = note.clone();
+        move |reason, message| note(format!("{reason:?} {message}").trim_end().into())
+    });
+    device.on_uncaptured_error(Arc::new(move |error| match error {
+        wgpu::Error::Validation { .. } => panic!("{error}"),
+        other => note(other.to_string()),
+    }));
+    lost
 }
 
 fn descriptor() -> wgpu::InstanceDescriptor {

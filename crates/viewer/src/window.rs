@@ -1,8 +1,8 @@
-//! The demo in a window: events in, frames out. Whatever the surface does, the demo goes on.
+//! The demo in a window: events in, frames out. Whatever surface and device do, the demo goes on.
 
 use std::path::PathBuf;
 use std::sync::Arc;
-use std::time::Instant;
+use std::time::{Duration, Instant};
 
 use anyhow::Context as _;
 use winit::application::ApplicationHandler;
@@ -13,9 +13,12 @@ use winit::window::{Window, WindowId};
 use crate::app::App;
 use crate::cli::Demo;
 use crate::desk::Desk;
-use crate::gpu::Gpu;
+use crate::gpu::{Gpu, GpuError};
 use crate::mesh::SkinnedMesh;
 use crate::pads::Pads;
+
+/// A device that is lost twice within this time will be lost again.
+const LOSSES_APART: Duration = Duration::from_secs(10);
 
 /// Runs the demo until its window is closed.
 ///
@@ -33,6 +36,7 @@ pub fn run(demo: &Demo, app: App, mesh: SkinnedMesh, layout: Option<PathBuf>) ->
         size: demo.size,
         trace: demo.trace,
         stage: None,
+        lost: None,
         failed: None,
     };
     events.run_app(&mut host)?;
@@ -54,7 +58,27 @@ struct Host {
     size: [u32; 2],
     trace: bool,
     stage: Option<Stage>,
+    /// When the device was lost last.
+    lost: Option<Instant>,
     failed: Option<anyhow::Error>,
+}
+
+impl Host {
+    /// Opens the device anew when it was lost, with all that was made with it; the world does not notice.
+    fn replace_lost_device(&mut self) -> anyhow::Result<()> {
+        let Some(stage) = self.stage.take_if(|stage| stage.gpu.lost().is_some()) else { return Ok(()) };
+        let (adapter, reason) =
+            (stage.gpu.adapter_name.clone(), stage.gpu.lost().unwrap_or_default().to_owned());
+        if let Some(since) = self.lost.map(|at| at.elapsed()).filter(|since| *since < LOSSES_APART) {
+            return Err(GpuError::LostAgain { adapter, seconds: since.as_secs_f32(), reason }.into());
+        }
+        self.lost = Some(Instant::now());
+        let (window, mesh) = stage.close();
+        (self.app.ground_changed, self.app.recording) = (true, None);
+        self.stage = Some(Stage::on(window, mesh, &mut self.app)?);
+        self.app.notice = Some(format!("The device of {adapter} was lost and opened anew: {reason}"));
+        Ok(())
+    }
 }
 
 /// What there is once the window is.
@@ -82,6 +106,10 @@ impl ApplicationHandler for Host {
     }
 
     fn window_event(&mut self, events: &ActiveEventLoop, _: WindowId, event: WindowEvent) {
+        if let Err(error) = self.replace_lost_device() {
+            self.failed = Some(error);
+            return events.exit();
+        }
         let Some(stage) = &mut self.stage else { return };
         // egui tells what it wants through its own context; nothing needs the answer.
         let _ = stage.egui.on_window_event(&stage.window, &event);
@@ -119,6 +147,11 @@ impl Stage {
         let size = winit::dpi::PhysicalSize::new(size[0], size[1]);
         let attributes = Window::default_attributes().with_title("Policy Space").with_inner_size(size);
         let window = Arc::new(events.create_window(attributes).context("the system gives no window")?);
+        Self::on(window, mesh, app)
+    }
+
+    /// Everything but the window.
+    fn on(window: Arc<Window>, mesh: SkinnedMesh, app: &mut App) -> anyhow::Result<Self> {
         let (gpu, surface, adapter) = Gpu::for_window(Arc::clone(&window))?;
         let size = window.inner_size();
         let mut configuration = surface
@@ -144,6 +177,13 @@ impl Stage {
         );
         let now = Instant::now();
         Ok(Self { window, surface, configuration, gpu, desk, egui, last: now, traced: now })
+    }
+
+    /// Ends recordings and gives surface and device up; answers what outlives them.
+    fn close(self) -> (Arc<Window>, SkinnedMesh) {
+        let mesh = self.desk.mesh().clone();
+        self.desk.finish();
+        (self.window, mesh)
     }
 
     fn resize(&mut self, size: [u32; 2]) {
@@ -179,6 +219,8 @@ impl Stage {
         };
         let Some(texture) = texture else {
             self.desk.skip(output);
+            // A lost device may say so only when asked; the next event then finds it lost.
+            let _ = self.gpu.device.poll(wgpu::PollType::Poll);
             std::thread::sleep(std::time::Duration::from_millis(10));
             return;
         };

@@ -119,3 +119,21 @@ fn draw_with_panels(gpu: &viewer::gpu::Gpu, mut app: App) -> RgbaImage {
     frame(0.0);
     frame(1.0)
 }
+
+#[test]
+fn a_lost_device_is_an_error_and_no_panic() {
+    let Some(gpu) = gpu() else { return };
+    let mut app = App::new(simulation(), Layout::default());
+    let mut desk = Desk::new(&gpu, OffScreen::FORMAT, mesh());
+    let mut renderer = Renderer::new(&gpu, OffScreen::FORMAT, RenderConfig::for_adapter(true), mesh());
+    let mut scene = Scene::default();
+    set_scene(&mut scene, &app.sim, &app.camera, 0.7, (1.0, &Shown::default(), &Trail::default()));
+    let target = OffScreen::new(&gpu, SIZE);
+    assert!(renderer.picture(&target, &scene).is_ok() && gpu.lost().is_none());
+    gpu.device.destroy();
+    let said = renderer.picture(&target, &scene).unwrap_err().to_string();
+    assert!(said.contains("lost"), "{said}");
+    assert!(gpu.lost().is_some(), "whoever draws next has to know");
+    let output = desk.panels(&mut app, egui::RawInput::default(), 0.7);
+    assert!(desk.picture(&mut app, output, SIZE, true).is_err());
+}

@@ -100,6 +100,12 @@ impl Renderer {
         }
     }
 
+    /// The humanoid.
+    #[must_use]
+    pub fn mesh(&self) -> &SkinnedMesh {
+        &self.mesh
+    }
+
     /// Puts another humanoid in the place of the present one.
     pub fn set_mesh(&mut self, mesh: SkinnedMesh) {
         self.mesh_buffers = MeshBuffers::new(&self.gpu.device, &self.layouts, &mesh);
