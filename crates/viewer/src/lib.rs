@@ -12,6 +12,7 @@ pub mod mesh;
 pub mod overlay;
 pub mod pads;
 mod panels;
+pub mod poses;
 pub mod recorder;
 pub mod render;
 pub mod sim;

@@ -20,6 +20,15 @@ fn run(cli: &Cli) -> anyhow::Result<()> {
     match cli.command {
         Some(Task::BenchCrowd(choices)) => bench::crowd(choices),
         Some(Task::BenchFrame(choices)) => bench::frame(choices),
+        None if cli.demo.headless && cli.demo.poses.is_some() => {
+            if let Some(p) = headless::play(&cli.demo)? {
+                println!(
+                    "{}: {:.2} s of {} poses at {:.2} Hz, {} pictures",
+                    p.clip, p.seconds, p.poses, p.hz, p.frames
+                );
+            }
+            Ok(())
+        }
         None if cli.demo.headless => {
             let report = headless::run(&cli.demo)?;
             println!(

@@ -109,8 +109,8 @@ pub fn set_scene(
     scene.markers.clear();
     scene.ribbons.clear();
     scene.hide_figures = shown.collision_shapes;
-    for (index, actor) in sim.actors().iter().enumerate() {
-        let figure = figure(sim, &actor.poses(alpha), tint(index));
+    for index in 0..sim.actors().len() {
+        let figure = figure(sim, &sim.poses(index, alpha), tint(index));
         if shown.collision_shapes {
             collision_shapes(scene, sim, &figure, [0.85, 0.62, 0.25, 1.0]);
         }

@@ -6,9 +6,31 @@ use crate::sim::{SimConfig, TICK_SECS};
 /// How far a failure is rewound, seconds.
 const REWIND_SECS: f32 = 2.0;
 
+/// Commands that mean nothing while a clip is shown.
+fn needs_a_simulation(command: &ViewerCommand) -> bool {
+    use ViewerCommand as C;
+    matches!(
+        command,
+        C::Goal(_)
+            | C::Layers(_)
+            | C::Mode(_)
+            | C::Ghost(_)
+            | C::Skill(_)
+            | C::Scrub(_)
+            | C::StepBack
+            | C::Settings(_)
+            | C::Ground(_)
+            | C::Characters(_)
+    )
+}
+
 impl App {
     /// Does what a command says. What can't be done is said in [`App::notice`] and changes nothing.
     pub fn apply(&mut self, command: ViewerCommand) {
+        if self.sim.playback().is_some() && needs_a_simulation(&command) {
+            self.notice = Some("A clip is shown: there is nothing to steer and no physics.".into());
+            return;
+        }
         match command {
             ViewerCommand::Goal(goal) => self.sim.overrides.goal = goal,
             ViewerCommand::Layers(layers) => self.layers = layers,

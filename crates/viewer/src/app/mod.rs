@@ -22,7 +22,7 @@ use crate::analysis::Analysis;
 use crate::camera::Camera;
 use crate::panels;
 use crate::render::Scene;
-use crate::sim::{Blowup, Simulation, TICK_SECS};
+use crate::sim::{Blowup, Playback, Simulation, TICK_SECS};
 use crate::stage::{Trail, set_scene};
 pub use clock::Clock;
 pub use command::{Record, ViewerCommand};
@@ -166,7 +166,7 @@ impl App {
     pub fn follow(&mut self, dt: f32, alpha: f32) {
         let input = self.input();
         let player = self.sim.player();
-        let pelvis = player.poses(alpha).positions[0];
+        let pelvis = self.sim.poses(0, alpha).positions[0];
         let (heading, ground) = (player.heading(), player.state.ground_height);
         self.camera.advance(dt, input.right_stick, pelvis, heading, ground);
     }
@@ -177,6 +177,9 @@ impl App {
         let input = self.input();
         self.sim.overrides.blend = self.layers.blend();
         let blowups = self.sim.tick(&input, self.camera.heading());
+        if self.sim.playback().is_some_and(Playback::has_restarted) {
+            self.trail.clear();
+        }
         self.trail.follow(&self.sim);
         self.plots.tick(&self.sim);
         if let Some(analysis) = &mut self.analysis {
@@ -196,7 +199,7 @@ impl App {
         let how = (self.alpha(), &self.layout.shown, &self.trail);
         set_scene(scene, &self.sim, &self.camera, around, how);
         if let Some(grab) = &self.grab {
-            let from = self.sim.player().poses(self.alpha()).positions[grab.body.index()];
+            let from = self.sim.poses(0, self.alpha()).positions[grab.body.index()];
             scene.arrow(from, from + grab.pull, 0.012, [0.95, 0.3, 0.1, 1.0]);
         }
     }

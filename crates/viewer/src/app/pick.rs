@@ -54,7 +54,7 @@ pub(super) fn read(ui: &mut Ui, app: &App, free: Rect, around: f32, commands: &m
             commands.push(ViewerCommand::Grab(grab));
         }
         (Some(grab), Some(at)) if response.dragged_by(PointerButton::Primary) => {
-            let from = app.sim.player().poses(app.alpha()).positions[grab.body.index()];
+            let from = app.sim.poses(0, app.alpha()).positions[grab.body.index()];
             let pull = Ray::through(&view, screen, at).at_depth_of(from, &view) - from;
             commands.push(ViewerCommand::Grab(Some(Grab { pull: pull.clamp_length_max(2.0), ..*grab })));
         }
@@ -89,7 +89,11 @@ impl Ray {
 }
 
 fn nearest_body(app: &App, ray: &Ray) -> Option<Body> {
-    let poses = app.sim.player().poses(app.alpha());
+    // A clip can't be pulled at: the mouse turns the camera.
+    if app.sim.playback().is_some() {
+        return None;
+    }
+    let poses = app.sim.poses(0, app.alpha());
     let distance = |body: &Body| {
         let to = poses.positions[body.index()] - ray.from;
         (to - ray.along * to.dot(ray.along)).length()

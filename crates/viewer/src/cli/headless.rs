@@ -15,24 +15,49 @@ use crate::desk::Desk;
 use crate::gpu::Gpu;
 use crate::mesh::SkinnedMesh;
 use crate::render::{OffScreen, RenderConfig};
-use crate::sim::{Blowup, LIE_SECS, TICK_SECS};
+use crate::sim::{Blowup, LIE_SECS, Playback, TICK_SECS};
 
 /// Runs the demo without a window.
 ///
 /// # Errors
 /// When a file can't be read or written, or nothing can be drawn though pictures are asked for.
 pub fn run(demo: &Demo) -> anyhow::Result<Report> {
-    let mut run = Headless::new(demo)?;
-    let ticks = (run.seconds / f64::from(TICK_SECS)).round().max(1.0) as u64;
-    for tick in 0..ticks {
-        run.tick(tick)?;
-    }
-    let report = run.report();
+    let report = Headless::through(demo)?.report();
     if let Some(path) = &demo.report {
         let text = serde_json::to_string_pretty(&report).context("report")? + "\n";
         write(path, text.as_bytes())?;
     }
     Ok(report)
+}
+
+/// What a clip shown without a window came to.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Played {
+    /// Name of the clip.
+    pub clip: String,
+    /// Seconds that were shown.
+    pub seconds: f64,
+    /// Poses of the clip.
+    pub poses: usize,
+    /// Poses a second.
+    pub hz: f64,
+    /// Pictures written.
+    pub frames: usize,
+}
+
+/// Shows the clip of `--poses` without a window; `None` when there is none.
+///
+/// # Errors
+/// As [`run`].
+pub fn play(demo: &Demo) -> anyhow::Result<Option<Played>> {
+    let run = Headless::through(demo)?;
+    Ok(run.app.sim.playback().map(|clip| Played {
+        clip: clip.clip().into(),
+        seconds: run.seconds,
+        poses: clip.pose_count(),
+        hz: clip.hz(),
+        frames: run.painter.as_ref().map_or(0, |p| p.drawn),
+    }))
 }
 
 struct Headless<'a> {
@@ -46,11 +71,22 @@ struct Headless<'a> {
 }
 
 impl<'a> Headless<'a> {
+    /// A whole run.
+    fn through(demo: &'a Demo) -> anyhow::Result<Self> {
+        let mut run = Self::new(demo)?;
+        let ticks = (run.seconds / f64::from(TICK_SECS)).round().max(1.0) as u64;
+        for tick in 0..ticks {
+            run.tick(tick)?;
+        }
+        Ok(run)
+    }
+
     fn new(demo: &'a Demo) -> anyhow::Result<Self> {
         let input = PadInput::load(demo)?;
-        let seconds = demo.seconds.or(input.duration()).unwrap_or(10.0);
         let opened = open(demo)?;
         let mut app = opened.app;
+        let clip = app.sim.playback().map(Playback::duration);
+        let seconds = demo.seconds.or(clip).or(input.duration()).unwrap_or(10.0);
         if let Some(complaint) = app.notice.take() {
             bail!("{complaint}");
         }

@@ -38,6 +38,8 @@ Examples:
       without a window: 20 seconds under a script of pad input, a report and pictures
   policy-space --headless --script assets/scripts/walk.ron --seconds 5 --frames out/ --panels
       the same, with the panels in the pictures
+  policy-space --poses walk.json
+      a clip in a window, round and round; with --headless --frames out/ once, as pictures
 
 Exit status: 0 when it ran, 1 when it could not, 2 when the command line is wrong.";
 
@@ -71,7 +73,18 @@ pub struct Demo {
     /// Pad input recorded from a device by `pad record`, instead of a script.
     #[arg(long, value_name = "FILE", requires = "headless", conflicts_with = "script")]
     pub recording: Option<PathBuf>,
-    /// How long to simulate, up to 3600; by default as long as the script or recording, or 10.
+    /// Show a clip instead of a simulation: poses as `trainer view CLIP --poses FILE` writes them (JSON with
+    /// format, clip, hz and qpos). Bodies are placed by forward kinematics and nothing is simulated; between two
+    /// poses positions and rotations are interpolated.
+    #[arg(
+        long,
+        value_name = "FILE",
+        conflicts_with_all = [
+            "script", "recording", "report", "pack", "mode", "ghost", "terrain", "characters", "seed",
+        ]
+    )]
+    pub poses: Option<PathBuf>,
+    /// How long to simulate, up to 3600; by default as long as the script, recording or clip, or 10.
     #[arg(long, value_name = "SECONDS", requires = "headless", value_parser = seconds)]
     pub seconds: Option<f64>,
     /// Write what happened as JSON to this file.
@@ -229,6 +242,11 @@ mod tests {
         assert!(error(&["--frobnicate"]).contains("--frobnicate"));
         assert!(error(&["--headless", "--frames", "x", "--panels=stove"]).contains("paths,graph"));
         assert!(error(&["--report", "x.json"]).contains("--headless"));
+        for other in ["--script", "--recording", "--report", "--pack"] {
+            let said = error(&["--headless", "--poses", "a.json", other, "b"]);
+            assert!(said.contains("--poses") && said.contains("cannot be used with"), "{said}");
+        }
+        assert!(error(&["--poses", "a.json", "--characters", "3"]).contains("cannot be used with"));
     }
 
     #[test]

@@ -3,10 +3,10 @@
 use std::path::PathBuf;
 
 use super::{Demo, load};
-use crate::app::{App, Layout, Side};
+use crate::app::{App, Layout, PanelKind, Side};
 use crate::assets;
 use crate::mesh::SkinnedMesh;
-use crate::sim::{SimConfig, Simulation};
+use crate::sim::{Playback, SimConfig, Simulation};
 
 /// What a window needs.
 #[derive(Debug)]
@@ -22,10 +22,12 @@ pub struct Opened {
 /// Makes the demo. A mesh or layout that is no good is said in [`App::notice`], and the default taken.
 ///
 /// # Errors
-/// When the pack is no good, or the world can't be made.
+/// When the pack or the clip is no good, or the world can't be made.
 pub fn open(demo: &Demo) -> anyhow::Result<Opened> {
     let mut notices = Vec::new();
-    let home = if demo.no_layout || demo.headless { None } else { Layout::home() };
+    // A clip needs other panels than the demo, whose layout it leaves alone.
+    let clip = demo.poses.as_deref();
+    let home = if demo.no_layout || demo.headless || clip.is_some() { None } else { Layout::home() };
     let mut layout = match home.as_deref().map(Layout::load) {
         Some(Ok(layout)) => layout,
         Some(Err(error)) => {
@@ -34,6 +36,10 @@ pub fn open(demo: &Demo) -> anyhow::Result<Opened> {
         }
         None => Layout::default(),
     };
+    if clip.is_some() {
+        layout.open =
+            [PanelKind::Physics, PanelKind::View, PanelKind::Record].map(|kind| (kind, Side::Left)).into();
+    }
     if let Some(list) = demo.panels.as_ref().filter(|list| !list.0.is_empty()) {
         layout.open.clear();
         // In turn to the left and to the right.
@@ -46,10 +52,14 @@ pub fn open(demo: &Demo) -> anyhow::Result<Opened> {
         ground: demo.terrain,
         characters: demo.characters,
         seed: demo.seed,
-        history: !demo.headless,
+        history: !demo.headless && clip.is_none(),
     };
     let mut sim = Simulation::new(assets::HUMANOID_MJCF, pack, config)?;
     sim.overrides.mode = demo.mode;
+    if let Some(path) = clip {
+        let playback = Playback::load(path, sim.model())?;
+        sim.play(playback);
+    }
     if let Some(mode) = demo.ghost {
         sim.start_ghost(mode);
     }

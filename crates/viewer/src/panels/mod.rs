@@ -130,7 +130,12 @@ fn status(ui: &mut Ui, app: &App, free: Rect, commands: &mut Vec<ViewerCommand>)
     };
     let skill = player.report().skill.map(|s| app.sim.pack().skills()[s.skill].name.as_str());
     let state = if app.clock.paused { "  paused" } else { "" };
-    let text = format!("{}   {:.2} m/s{state}", skill.unwrap_or(&place), player.speed());
+    let text = match app.sim.playback() {
+        Some(clip) => {
+            format!("{}   {:.2} of {:.2} s{state}", clip.clip(), clip.secs(app.alpha()), clip.duration())
+        }
+        None => format!("{}   {:.2} m/s{state}", skill.unwrap_or(&place), player.speed()),
+    };
     let at = free.left_bottom() + egui::vec2(14.0, -12.0);
     let painter = ui.painter();
     let font = egui::FontId::proportional(15.0);

@@ -4,6 +4,7 @@
 mod actor;
 mod error;
 mod ghost;
+mod playback;
 mod queries;
 mod setup;
 mod totals;
@@ -19,6 +20,7 @@ use policy_core::{
 pub use actor::{Actor, interpolated};
 pub use error::SimError;
 pub use ghost::Ghost;
+pub use playback::Playback;
 pub use setup::{Ground, MAX_CHARACTERS, SimConfig};
 pub use totals::{StateHash, Totals};
 
@@ -69,6 +71,7 @@ pub struct Simulation {
     crowd: Crowd,
     actors: Vec<Actor>,
     ghost: Option<Ghost>,
+    playback: Option<Playback>,
     mapper: CommandMapper,
     /// Stands in for the pad.
     pub overrides: Overrides,
@@ -79,8 +82,11 @@ pub struct Simulation {
 
 impl Simulation {
     /// Runs one control tick under `pad`, for a camera that looks along `camera`. Characters that blow up are
-    /// back in their state before it, and are answered.
+    /// back in their state before it, and are answered. While a clip is played it goes on by a tick instead.
     pub fn tick(&mut self, pad: &GamepadState, camera: Heading) -> Vec<Blowup> {
+        if self.tick_playback() {
+            return Vec::new();
+        }
         let start = Instant::now();
         let command = self.command(pad, camera);
         let home = self.actors[0].position();
@@ -139,6 +145,9 @@ impl Simulation {
 
     /// Everybody back to the start.
     pub fn reset(&mut self) {
+        if self.playback.is_some() {
+            return self.show_pose(0);
+        }
         for index in 0..self.actors.len() {
             let (at, heading) = (self.config.start_of(index), self.config.heading_of(index));
             if self.crowd.character_mut(index).stand_at(at.x, at.y, heading, 0.0).is_ok() {

@@ -121,6 +121,7 @@ impl Simulation {
             crowd,
             actors,
             ghost: None,
+            playback: None,
             mapper,
             overrides: Overrides::default(),
             ticks: 0,
