@@ -1,14 +1,16 @@
-//! `trainer view`: a clip fitted to the humanoid, told in numbers and written as poses.
+//! `trainer view`: a clip fitted to the humanoid, told in numbers, written as poses, or drawn by the demo, which is
+//! a program of its own: the trainer itself draws nothing.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
+use std::process::Command;
 
-use anyhow::{Context, Result};
+use anyhow::{Context, Result, bail};
 use clap::Args;
 use physics_bridge::Model;
 use serde::Serialize;
 use trainer::checkpoint::write_atomically;
 use trainer::clip::{ClipFolder, load_file};
-use trainer::env::fit;
+use trainer::env::{Fitted, fit};
 
 /// Arguments of the verb.
 #[derive(Args)]
@@ -18,6 +20,12 @@ pub(crate) struct Arguments {
     /// File to write the poses to: JSON, one list of `qpos` a control tick.
     #[arg(long)]
     poses: Option<PathBuf>,
+    /// Folder to draw the clip into as pictures, by the demo without a window.
+    #[arg(long, value_name = "DIR")]
+    pictures: Option<PathBuf>,
+    /// The demo's program, instead of the `policy-space` beside this one.
+    #[arg(long, value_name = "PATH", requires = "pictures")]
+    viewer: Option<PathBuf>,
 }
 
 /// Poses at the control rate, for a renderer to play.
@@ -29,7 +37,7 @@ struct Poses<'a> {
     qpos: Vec<&'a [f64]>,
 }
 
-/// Fits, tells and writes.
+/// Fits, tells, writes and draws.
 pub(crate) fn run(model: &Model, folder: impl Fn() -> Result<ClipFolder>, a: &Arguments) -> Result<()> {
     let file = PathBuf::from(&a.clip);
     let clip = if file.is_file() { load_file(&file)? } else { folder()?.load(&a.clip)? };
@@ -48,14 +56,98 @@ pub(crate) fn run(model: &Model, folder: impl Fn() -> Result<ClipFolder>, a: &Ar
         radians.to_degrees(),
     );
     if let Some(path) = &a.poses {
-        let stride = trainer::clip::TICK_STRIDE;
-        let qpos = fitted.motion.poses.iter().step_by(stride).map(|p| &p.qpos[..]).collect();
-        let hz = 1.0 / (fitted.motion.dt_secs * stride as f64);
-        let poses = Poses { format: "policy-space poses", clip: &clip.name, hz, qpos };
-        let text = serde_json::to_string(&poses)?;
-        write_atomically(path, text.as_bytes())
-            .with_context(|| format!("cannot write {}", path.display()))?;
+        write(&fitted, &clip.name, path)?;
         println!("wrote {}", path.display());
     }
-    Ok(())
+    let Some(pictures) = &a.pictures else { return Ok(()) };
+    let viewer = viewer_program(a.viewer.as_deref())?;
+    let scratch = Scratch::new()?;
+    let poses = scratch.0.join("poses.json");
+    write(&fitted, &clip.name, &poses)?;
+    let status = Command::new(&viewer)
+        .args(["--headless", "--poses"])
+        .arg(&poses)
+        .arg("--frames")
+        .arg(pictures)
+        .status()
+        .with_context(|| format!("cannot run {}", viewer.display()))?;
+    drop(scratch);
+    match status.code() {
+        Some(0) => Ok(()),
+        // The demo has said what is wrong.
+        Some(code) => std::process::exit(code),
+        None => bail!("{} was ended: {status}", viewer.display()),
+    }
+}
+
+/// A folder that goes with its owner.
+struct Scratch(PathBuf);
+
+impl Scratch {
+    fn new() -> Result<Self> {
+        let path = std::env::temp_dir().join(format!("policy-space-view-{}", std::process::id()));
+        std::fs::create_dir(&path).with_context(|| format!("cannot make the folder {}", path.display()))?;
+        Ok(Self(path))
+    }
+}
+
+impl Drop for Scratch {
+    fn drop(&mut self) {
+        // What can't be removed is left to whoever clears the system's temporary files.
+        let _ = std::fs::remove_dir_all(&self.0);
+    }
+}
+
+/// Writes the poses of the control ticks.
+fn write(fitted: &Fitted, clip: &str, path: &Path) -> Result<()> {
+    let stride = trainer::clip::TICK_STRIDE;
+    let qpos = fitted.motion.poses.iter().step_by(stride).map(|p| &p.qpos[..]).collect();
+    let hz = 1.0 / (fitted.motion.dt_secs * stride as f64);
+    let poses = Poses { format: "policy-space poses", clip, hz, qpos };
+    let text = serde_json::to_string(&poses)?;
+    write_atomically(path, text.as_bytes()).with_context(|| format!("cannot write {}", path.display()))
+}
+
+/// The demo's program: the named one, or the one that was built beside this.
+fn viewer_program(named: Option<&Path>) -> Result<PathBuf> {
+    let program = match named {
+        Some(path) => path.to_owned(),
+        None => {
+            let own = std::env::current_exe().context("cannot tell where this program lies")?;
+            own.with_file_name(format!("policy-space{}", std::env::consts::EXE_SUFFIX))
+        }
+    };
+    if !program.is_file() {
+        bail!(
+            "expected the demo's program at {}, found none: build it with `cargo build --release -p viewer`, \
+             or name it with --viewer PATH",
+            program.display()
+        );
+    }
+    Ok(program)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_missing_viewer_is_named_with_the_way_to_build_it() {
+        let said = viewer_program(Some(Path::new("no/such/policy-space"))).unwrap_err().to_string();
+        assert!(
+            said.contains("no/such/policy-space") && said.contains("cargo build --release -p viewer"),
+            "{said}"
+        );
+        let own = std::env::current_exe().unwrap();
+        assert_eq!(viewer_program(Some(&own)).unwrap(), own);
+    }
+
+    #[test]
+    fn a_scratch_folder_goes_with_its_owner() {
+        let scratch = Scratch::new().unwrap();
+        let path = scratch.0.clone();
+        std::fs::write(path.join("poses.json"), "x").unwrap();
+        drop(scratch);
+        assert!(!path.exists());
+    }
 }
