@@ -1,7 +1,7 @@
 //! candle on the processor: `Var`s, `backward`, and AdamW of candle-nn without decay.
 //!
-//! Its gradients are detached from the graph, so a second derivative is not to be had; the penalty's input gradient
-//! is written out as the product of masked layers that it is for ReLU, which needs a first derivative only.
+//! Unless told otherwise it detaches gradients from the graph, so there is no second derivative; the penalty's input
+//! gradient is written out as the product of masked layers that it is for ReLU, which needs a first derivative only.
 
 use anyhow::{Context, Result};
 use candle_core::{DType, Device, Tensor, Var};
