@@ -67,6 +67,10 @@ pub struct Phase {
     /// Height of the hills of the wavy ground that three of four episodes take place on, metres; zero for flat ground.
     #[serde(default)]
     pub terrain_metres: f32,
+    /// Standard deviation of every action in this phase, where it is another than `ppo.deviation`: less towards the end
+    /// shows the policy, and its judges, what it is like without noise.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub deviation: Option<f32>,
 }
 
 /// Why a recipe can't be used.
@@ -225,6 +229,12 @@ impl Recipe {
             ((0.0..1.0).contains(&ppo.gamma), "ppo.gamma", "a discount in [0, 1)", ppo.gamma.to_string()),
             (unit(ppo.gae_lambda), "ppo.gae_lambda", "a discount in [0, 1]", ppo.gae_lambda.to_string()),
             (positive(ppo.deviation), "ppo.deviation", "a positive deviation", ppo.deviation.to_string()),
+            (
+                self.phases.iter().all(|p| p.deviation.is_none_or(positive)),
+                "phases.deviation",
+                "a positive deviation",
+                format!("{:?}", self.phases),
+            ),
             (
                 ppo.epochs > 0 && ppo.minibatch > 0,
                 "ppo.epochs and minibatch",

@@ -164,6 +164,8 @@ impl Training {
     /// When the model can't be set on the terrain of the phase.
     pub fn iterate(&mut self) -> Result<IterationReport, ModelError> {
         self.choose_ground()?;
+        let phase = self.recipe.phase_at(self.samples).1;
+        self.learner.config.deviation = phase.deviation.unwrap_or(self.recipe.ppo.deviation);
         let start = std::time::Instant::now();
         self.roll_out();
         let rolled = start.elapsed();

@@ -9,7 +9,8 @@ use physics_bridge::Model;
 use policy_core::{CharacterPack, CharacterState};
 use trainer::checkpoint::write_atomically;
 use trainer::clip::ClipFolder;
-use trainer::evaluate::{clip_states, pose_error, watch};
+use trainer::env::DT_SECS;
+use trainer::evaluate::{clip_states, pose_error, watch, watch_skill};
 use trainer::recipe::Recipe;
 use trainer::strip::{Row, draw};
 
@@ -53,10 +54,46 @@ pub(crate) fn run(model: &Model, recipes: &Path, clips: &ClipFolder, a: &Argumen
             Row { caption: format!("clip {name}"), states: figures(&clip) },
             Row { caption: format!("policy {}", node.name), states: figures(&motion[start..start + span]) },
         ];
-        let path = a.out.join(format!("{}.svg", node.name));
-        write_atomically(&path, draw(&rows).as_bytes())
-            .with_context(|| format!("cannot write {}", path.display()))?;
-        println!("wrote {}", path.display());
+        write(&a.out, &node.name, &rows)?;
     }
+    for (index, skill) in pack.skills().iter().enumerate() {
+        let recipe = Recipe::load(&recipes.join(format!("{}.toml", skill.name)))?;
+        let raises = pack.recovery() == Some(index);
+        // One that raises the character has a clip for each side it may lie on.
+        for (which, clip) in recipe.clips.iter().take(if raises { 2 } else { 1 }).enumerate() {
+            let states = clip_states(model, &clips.load(&clip.name)?)?;
+            let states = if raises { &states[..] } else { &states[..states.len() / 2] };
+            let motion = watch_skill(model, &pack, index, which == 0);
+            let name = if raises { clip.name.clone() } else { skill.name.clone() };
+            // The whole of a skill on the strip, whatever it takes.
+            let figures = |states: &[CharacterState]| -> Vec<CharacterState> {
+                let last = states.len().saturating_sub(1);
+                (0..a.figures)
+                    .filter_map(|i| states.get(i * last / a.figures.max(2).saturating_sub(1)))
+                    .copied()
+                    .collect()
+            };
+            let secs = |states: &[CharacterState]| states.len() as f32 * DT_SECS;
+            let rows = [
+                Row {
+                    caption: format!("clip {}, {:.1} s", clip.name, secs(states)),
+                    states: figures(states),
+                },
+                Row {
+                    caption: format!("policy {}, {:.1} s", skill.name, secs(&motion)),
+                    states: figures(&motion),
+                },
+            ];
+            write(&a.out, &name, &rows)?;
+        }
+    }
+    Ok(())
+}
+
+fn write(folder: &Path, name: &str, rows: &[Row]) -> Result<()> {
+    let path = folder.join(format!("{name}.svg"));
+    write_atomically(&path, draw(rows).as_bytes())
+        .with_context(|| format!("cannot write {}", path.display()))?;
+    println!("wrote {}", path.display());
     Ok(())
 }

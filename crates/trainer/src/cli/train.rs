@@ -1,17 +1,20 @@
 //! `trainer train`: one skill, or the whole graph in order.
 
+use std::path::Path;
 use std::time::Duration;
 
 use anyhow::Result;
 use clap::Args;
 use indicatif::{ProgressBar, ProgressStyle};
+use trainer::env::{Course, DT_SECS, NodeReport, REPORTED_NODES};
+use trainer::recipe::Recipe;
 use trainer::run::Run;
 use trainer::workplace::Workplace;
 
 /// Arguments of the verb.
 #[derive(Args)]
 pub(crate) struct Arguments {
-    /// Skill whose recipe to run.
+    /// Skill whose recipe to run, or the file of a recipe.
     #[arg(required_unless_present = "all", conflicts_with = "all")]
     skill: Option<String>,
     /// Run all recipes, parents before children.
@@ -37,6 +40,7 @@ pub(crate) fn run(workplace: &Workplace, arguments: &Arguments) -> Result<()> {
         rayon::ThreadPoolBuilder::new().num_threads(threads).build_global()?;
     }
     let recipes = match &arguments.skill {
+        Some(file) if file.ends_with(".toml") => vec![Recipe::load(Path::new(file))?],
         Some(skill) => vec![workplace.recipe(skill)?],
         None => workplace.recipes_in_order()?,
     };
@@ -45,6 +49,24 @@ pub(crate) fn run(workplace: &Workplace, arguments: &Arguments) -> Result<()> {
         train(&mut run, arguments.iterations)?;
     }
     Ok(())
+}
+
+fn add(sums: &mut [NodeReport; REPORTED_NODES], more: &[NodeReport; REPORTED_NODES]) {
+    for (sum, more) in sums.iter_mut().zip(more) {
+        sum.ticks += more.ticks;
+        sum.failed += more.failed;
+        sum.speed_mps += more.speed_mps;
+    }
+}
+
+/// Falls per character-minute and speed nearest to every node.
+fn by_node(course: &Course, nodes: &[NodeReport]) -> String {
+    let told = course.nodes().iter().zip(nodes).map(|(node, report)| {
+        let ticks = report.ticks.max(1) as f64;
+        let falls = f64::from(report.failed) / (ticks * f64::from(DT_SECS) / 60.0);
+        format!("{} {falls:.1}/min {:.2} m/s", node.name, report.speed_mps / ticks)
+    });
+    told.collect::<Vec<_>>().join(", ")
 }
 
 fn train(run: &mut Run, iterations: Option<u64>) -> Result<()> {
@@ -57,6 +79,7 @@ fn train(run: &mut Run, iterations: Option<u64>) -> Result<()> {
     bar.set_position(run.training.samples);
     bar.reset_eta();
     let mut done = 0;
+    let mut nodes = [NodeReport::default(); REPORTED_NODES];
     while !run.is_done() && iterations.is_none_or(|most| done < most) {
         let report = run.advance()?;
         done += 1;
@@ -73,8 +96,13 @@ fn train(run: &mut Run, iterations: Option<u64>) -> Result<()> {
             report.secs[1],
             report.secs[2],
         ));
+        add(&mut nodes, &p.nodes);
         if bar.is_hidden() && done % 20 == 0 {
             println!("{skill} {} {}", run.training.samples, bar.message());
+            if run.training.course().nodes().len() > 2 {
+                println!("{}", by_node(run.training.course(), &nodes));
+            }
+            nodes = Default::default();
         }
     }
     run.save()?;

@@ -162,6 +162,12 @@ impl Course {
         if inside && ends.contains(&0.0) { 0.0 } else { self.between(place, |node| node.fall_height) }
     }
 
+    /// The node that weighs most.
+    #[must_use]
+    pub fn nearest(&self, place: Place) -> usize {
+        self.edges[place.edge][usize::from(place.t >= 0.5)]
+    }
+
     /// Blend weight of a node.
     #[must_use]
     pub fn weight(&self, place: Place, node: usize) -> f32 {

@@ -15,5 +15,5 @@ pub use command::{Command, DT_SECS};
 pub use config::{EnvironmentConfig, Fall, Start, Task};
 pub use course::{Course, CourseNode, Place};
 pub use demonstrations::{Demonstrations, Fitted, Normalisers, SourceError, StartPose, fit};
-pub use population::{Population, PopulationReport, Stage};
+pub use population::{NodeReport, Population, PopulationReport, REPORTED_NODES, Stage};
 pub use reward::{RewardTerms, standing_reward, target_reward};

@@ -36,6 +36,20 @@ impl Stage<'_> {
     }
 }
 
+/// Nodes that a report tells apart; a course with more counts the rest with the last.
+pub const REPORTED_NODES: usize = 8;
+
+/// What happened nearest to one node of the course.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct NodeReport {
+    /// Ticks of all characters.
+    pub ticks: u64,
+    /// Episodes that failed there.
+    pub failed: u32,
+    /// Speed along the wanted direction, summed over the ticks, metres per second.
+    pub speed_mps: f64,
+}
+
 /// Sums over the episodes that ended and the ticks that passed since the last report.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct PopulationReport {
@@ -51,6 +65,8 @@ pub struct PopulationReport {
     pub task: f64,
     /// |speed - commanded speed| of all ticks, metres per second.
     pub speed_error: f64,
+    /// By node of the course.
+    pub nodes: [NodeReport; REPORTED_NODES],
 }
 
 /// All characters that learn.
@@ -60,6 +76,8 @@ pub struct Population {
     ends: Vec<Done>,
     terms: Vec<RewardTerms>,
     episodes: Vec<Option<Episode>>,
+    /// Node nearest to where every character acted in the last tick.
+    nearest: Vec<usize>,
     scaling: ActionScaling,
     /// Critic inputs of every character now; the policy's are their first [`POLICY_INPUT_LEN`].
     pub inputs: Vec<f32>,
@@ -85,6 +103,7 @@ impl Population {
             ends: vec![Done::No; count],
             terms: vec![RewardTerms::default(); count],
             episodes: vec![None; count],
+            nearest: vec![0; count],
             scaling: scaling.clone(),
             inputs: vec![0.0; count * width],
             inputs_after: vec![0.0; count * width],
@@ -129,25 +148,28 @@ impl Population {
             .ends
             .par_iter_mut()
             .zip(self.terms.par_iter_mut())
-            .zip(self.episodes.par_iter_mut())
+            .zip(self.episodes.par_iter_mut().zip(self.nearest.par_iter_mut()))
             .zip(self.inputs.par_chunks_exact_mut(width))
             .zip(self.inputs_after.par_chunks_exact_mut(width))
             .zip(discriminator_inputs.par_chunks_exact_mut(DISCRIMINATOR_INPUT_LEN));
         let pairs = self.agents.par_iter_mut().zip(actions.par_chunks_exact(DOF_COUNT)).with_min_len(8);
-        pairs.zip(outs).for_each(|((agent, action), (((((end, terms), episode), input), after), judged))| {
-            let action: &[f32; DOF_COUNT] = action.try_into().expect("a chunk of this length");
-            let judged: &mut [f32; DISCRIMINATOR_INPUT_LEN] =
-                judged.try_into().expect("a chunk of this length");
-            (*terms, *end) = agent.step(stage, scaling, action, judged);
-            *episode = (*end != Done::No).then(|| agent.episode(*end));
-            write_input(agent, stage, after);
-            if *end == Done::No {
-                agent.advance_command(stage);
-            } else {
-                agent.reset(stage, false);
-            }
-            write_input(agent, stage, input);
-        });
+        pairs.zip(outs).for_each(
+            |((agent, action), (((((end, terms), (episode, node)), input), after), judged))| {
+                let action: &[f32; DOF_COUNT] = action.try_into().expect("a chunk of this length");
+                let judged: &mut [f32; DISCRIMINATOR_INPUT_LEN] =
+                    judged.try_into().expect("a chunk of this length");
+                (*terms, *end) = agent.step(stage, scaling, action, judged);
+                *episode = (*end != Done::No).then(|| agent.episode(*end));
+                *node = stage.course.nearest(agent.command.place);
+                write_input(agent, stage, after);
+                if *end == Done::No {
+                    agent.advance_command(stage);
+                } else {
+                    agent.reset(stage, false);
+                }
+                write_input(agent, stage, input);
+            },
+        );
         self.count();
     }
 
@@ -159,6 +181,12 @@ impl Population {
             report.episode_ticks += u64::from(episode.ticks);
         }
         report.ticks += self.terms.len() as u64;
+        for ((node, end), terms) in self.nearest.iter().zip(&self.ends).zip(&self.terms) {
+            let node = &mut report.nodes[(*node).min(REPORTED_NODES - 1)];
+            node.ticks += 1;
+            node.failed += u32::from(*end == Done::Failed);
+            node.speed_mps += f64::from(terms.speed_mps);
+        }
         for terms in &self.terms {
             report.task += f64::from(terms.task);
             report.speed_error += f64::from((terms.speed_mps - terms.commanded_mps).abs());

@@ -5,7 +5,8 @@ use std::sync::Arc;
 use glam::Vec2;
 use physics_bridge::{Model, Pose, QPOS_LEN, QVEL_LEN};
 use policy_core::{
-    Body, CharacterPack, Command, DOF_COUNT, Goal, JointTargets, SkillEnd, TARGET_RANGE_METRES,
+    Body, CharacterPack, CharacterState, Command, DOF_COUNT, Goal, JointTargets, SkillEnd,
+    TARGET_RANGE_METRES,
 };
 use rayon::prelude::*;
 
@@ -76,6 +77,48 @@ fn drop_limp(subject: &mut Subject, rng: &mut Rng) -> bool {
     }
     subject.character.sense_into(&mut subject.state);
     true
+}
+
+/// States of an episodic skill from its start until half a second after its end: the skill that raises a fallen character
+/// starts limp on the ground, on its face or on its back, any other out of the node it returns to.
+#[must_use]
+pub fn watch_skill(
+    model: &Model,
+    pack: &Arc<CharacterPack>,
+    skill: usize,
+    on_its_face: bool,
+) -> Vec<CharacterState> {
+    let back = pack.skills()[skill].returns_to;
+    let mut subject = Subject::new(model, pack, &pack.graph().nodes()[back].name);
+    let ahead = |subject: &Subject| Some(subject.position() + Vec2::new(TARGET_RANGE_METRES, 0.0));
+    let mut command = Command { goal: Goal::Node(back), ..Command::default() };
+    if pack.recovery() == Some(skill) {
+        let faces_down = |s: &Subject| (s.state.body(Body::Torso).rotation * glam::Vec3::X).z < -0.5;
+        let faces_up = |s: &Subject| (s.state.body(Body::Torso).rotation * glam::Vec3::X).z > 0.5;
+        let lies = |s: &Subject| if on_its_face { faces_down(s) } else { faces_up(s) };
+        let lying = (0..100).any(|seed| drop_limp(&mut subject, &mut Rng::new(seed, 11)) && lies(&subject));
+        if !lying {
+            return Vec::new();
+        }
+    } else {
+        for _ in 0..(SETTLE_SECS / DT_SECS) as u32 {
+            command.target = ahead(&subject);
+            subject.tick(&command);
+        }
+    }
+    command.skill = Some(skill);
+    let mut states = vec![subject.state];
+    let mut after = 0.0;
+    while after < 0.5 && states.len() < 300 {
+        command.target = if pack.recovery() == Some(skill) { None } else { ahead(&subject) };
+        if !subject.tick(&command) {
+            break;
+        }
+        command.skill = None;
+        states.push(subject.state);
+        after = if subject.controller.report().skill.is_some() { 0.0 } else { after + DT_SECS };
+    }
+    states
 }
 
 /// Share of rolls out of a walk that the discriminator ends within 3 s and after which the character still walks a second

@@ -5,6 +5,7 @@ use policy_core::{BlendMode, Button, Buttons, GamepadState};
 
 use super::{App, Record, ViewerCommand};
 use crate::camera::CameraMode;
+use crate::sim::SHOVE_BUTTON;
 
 /// Seconds in which a held key runs a trigger from 0 to 1, and back when let go.
 const RAMP_SECS: f32 = 1.2;
@@ -23,13 +24,14 @@ pub struct Keys {
 }
 
 /// What keys do, for the help overlay.
-pub const KEYS: [(&str, &str); 17] = [
+pub const KEYS: [(&str, &str); 18] = [
     ("W A S D, arrows", "walk where the camera looks; with Shift half as fast"),
     ("E", "hold: right trigger, the speed path; lets go slowly"),
     ("Q", "hold: left trigger, the stance path"),
     ("Space", "get up"),
     ("R", "roll"),
     ("J, K", "jump, kick, where the pack has them"),
+    ("V", "shove the character to the ground"),
     ("right mouse, I O U L", "turn the camera; wheel: closer or away"),
     ("left mouse on a body", "pull it"),
     ("C", "camera: orbit, follow, fixed"),
@@ -44,13 +46,14 @@ pub const KEYS: [(&str, &str); 17] = [
 ];
 
 /// What pad controls do, for the help overlay.
-pub const PAD: [(&str, &str); 6] = [
+pub const PAD: [(&str, &str); 7] = [
     ("left stick", "direction and speed"),
     ("right stick", "camera"),
     ("right trigger", "speed path: walk, jog, run"),
     ("left trigger", "stance path: walk, crouch, crawl"),
     ("A or cross", "get up"),
     ("B or circle", "roll"),
+    ("left shoulder", "shove the character to the ground"),
 ];
 
 impl Keys {
@@ -106,6 +109,7 @@ pub(super) fn read(ui: &Ui, app: &mut App, commands: &mut Vec<ViewerCommand>) {
             (Key::R, Button::East),
             (Key::J, Button::North),
             (Key::K, Button::West),
+            (Key::V, SHOVE_BUTTON),
         ];
         for (key, button) in held {
             buttons.set(button, input.key_down(key));

@@ -14,7 +14,8 @@ use std::time::{Duration, Instant};
 
 use physics_bridge::{Crowd, Diverged, Dump, Model, Settings};
 use policy_core::{
-    Blend, BlendMode, CharacterPack, Command, CommandMapper, GamepadState, Goal, GraphPosition, Heading,
+    Blend, BlendMode, Body, Button, Buttons, CharacterPack, Command, CommandMapper, GamepadState, Goal,
+    GraphPosition, Heading,
 };
 
 pub use actor::{Actor, interpolated};
@@ -62,6 +63,15 @@ pub struct Blowup {
     pub dump: Dump,
 }
 
+/// Shoves the characters, away from the camera.
+pub const SHOVE_BUTTON: Button = Button::LeftShoulder;
+
+/// Force of a shove on the torso, newton: more than any gait survives.
+const SHOVE_NEWTON: f32 = 1200.0;
+
+/// Length of a shove, seconds.
+const SHOVE_SECS: f32 = 0.2;
+
 /// Characters, controllers and ground.
 #[derive(Debug)]
 pub struct Simulation {
@@ -73,6 +83,8 @@ pub struct Simulation {
     ghost: Option<Ghost>,
     playback: Option<Playback>,
     mapper: CommandMapper,
+    /// Buttons of the last tick, for the shove.
+    shove_held: Buttons,
     /// Stands in for the pad.
     pub overrides: Overrides,
     ticks: u64,
@@ -90,6 +102,7 @@ impl Simulation {
         let start = Instant::now();
         let command = self.command(pad, camera);
         let home = self.actors[0].position();
+        self.shove(pad, camera);
         for actor in &mut self.actors {
             actor.receive(&command, home);
         }
@@ -122,6 +135,20 @@ impl Simulation {
         command.mode = self.overrides.mode;
         command.skill = self.overrides.skill.or(command.skill);
         command
+    }
+
+    /// A shove for everybody, away from the camera, when its button goes down.
+    fn shove(&mut self, pad: &GamepadState, camera: Heading) {
+        let pressed = pad.buttons.pressed_since(self.shove_held);
+        self.shove_held = pad.buttons;
+        if !pressed.contains(SHOVE_BUTTON) {
+            return;
+        }
+        let force = (camera.direction() * SHOVE_NEWTON).extend(0.0);
+        for character in self.crowd.characters_mut() {
+            // The force is within bounds; one that already has too many pushes does not need another.
+            let _ = character.push(Body::Torso, force, SHOVE_SECS);
+        }
     }
 
     fn blowups(&self) -> Vec<Blowup> {

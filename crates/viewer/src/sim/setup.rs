@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use glam::Vec2;
 use physics_bridge::{Character, Crowd, HISTORY_SECS, Model, Terrain};
-use policy_core::{Bindings, CharacterPack, CommandMapper, Heading};
+use policy_core::{Bindings, Buttons, CharacterPack, CommandMapper, Heading};
 
 use super::{Actor, Overrides, SimError, Simulation, TickTimes, Totals};
 
@@ -123,6 +123,7 @@ impl Simulation {
             ghost: None,
             playback: None,
             mapper,
+            shove_held: Buttons::NONE,
             overrides: Overrides::default(),
             ticks: 0,
             times: TickTimes::default(),
