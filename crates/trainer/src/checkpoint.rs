@@ -57,7 +57,7 @@ pub struct Progress {
     pub samples: u64,
     /// Wall-clock seconds of training.
     pub secs: f64,
-    /// Rate of the actor's Adam.
+    /// Rate of the actors' Adam, their geometric mean.
     pub actor_rate: f32,
     /// The learner's random numbers.
     pub rng: Rng,

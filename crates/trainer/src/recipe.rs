@@ -71,6 +71,13 @@ pub struct Phase {
     /// shows the policy, and its judges, what it is like without noise.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub deviation: Option<f32>,
+    /// Share of episodes that start limp in this phase, where it is another than `environment.start.ragdoll`.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub ragdoll: Option<f32>,
+    /// Ticks of an episode in this phase, where they are others than `environment.episode_ticks`: short ones keep a skill
+    /// without a fall rule near its clips.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub episode_ticks: Option<u32>,
 }
 
 /// Why a recipe can't be used.
@@ -196,7 +203,12 @@ impl Recipe {
                 env.characters.to_string(),
             ),
             ((1..=1024).contains(&env.steps), "environment.steps", "1 to 1024", env.steps.to_string()),
-            (env.episode_ticks > 0, "environment.episode_ticks", "at least 1", env.episode_ticks.to_string()),
+            (
+                env.episode_ticks > 0 && self.phases.iter().all(|p| p.episode_ticks != Some(0)),
+                "episode_ticks",
+                "at least 1",
+                "0".into(),
+            ),
             (env.speed_mps.is_finite(), "environment.speed_mps", "a finite speed", env.speed_mps.to_string()),
             (
                 ordered(env.target_metres),
@@ -230,9 +242,9 @@ impl Recipe {
             (unit(ppo.gae_lambda), "ppo.gae_lambda", "a discount in [0, 1]", ppo.gae_lambda.to_string()),
             (positive(ppo.deviation), "ppo.deviation", "a positive deviation", ppo.deviation.to_string()),
             (
-                self.phases.iter().all(|p| p.deviation.is_none_or(positive)),
-                "phases.deviation",
-                "a positive deviation",
+                self.phases.iter().all(|p| p.deviation.is_none_or(positive) && p.ragdoll.is_none_or(unit)),
+                "phases.deviation and ragdoll",
+                "a positive deviation and a share in [0, 1]",
                 format!("{:?}", self.phases),
             ),
             (

@@ -79,7 +79,7 @@ impl Run {
             networks.insert(role, Trained { network: network.clone(), adam: adam.clone() });
         }
         let progress = (self.seed, training.samples, self.secs);
-        let (rate, rng) = (training.learner.actor_rate, training.learner.rng);
+        let (rate, rng) = (training.learner.actor_rate(), training.learner.rng);
         let checkpoint = Checkpoint::new(networks, progress, rate, rng);
         checkpoint.save(&self.folder.join("checkpoint.safetensors"))?;
         plot::draw(&self.folder.join("metrics.csv"), &self.folder.join("metrics.svg"))

@@ -4,7 +4,9 @@ use physics_bridge::{Model, ModelError, Terrain};
 use policy_core::{ActionScaling, DISCRIMINATOR_INPUT_LEN, DOF_COUNT, POLICY_INPUT_LEN};
 
 use crate::amp::DiscriminatorReport;
-use crate::env::{Course, Demonstrations, Normalisers, Place, Population, PopulationReport, Stage};
+use crate::env::{
+    Course, Demonstrations, EnvironmentConfig, Normalisers, Place, Population, PopulationReport, Stage,
+};
 use crate::nn::{Adam, Network};
 use crate::ppo::{Learner, Rollout, UpdateReport};
 use crate::recipe::Recipe;
@@ -42,6 +44,8 @@ pub struct Training {
     pub samples: u64,
     course: Course,
     start_demonstrations: Option<Demonstrations>,
+    /// The recipe's, as the phase that is on has it.
+    environment: EnvironmentConfig,
     population: Population,
     rollout: Rollout,
     judged: Vec<f32>,
@@ -66,7 +70,7 @@ pub struct IterationReport {
     pub discriminator: DiscriminatorReport,
     /// Mean squared distance to the parents' parameters.
     pub distance: f64,
-    /// Rate of the actors' Adam.
+    /// Geometric mean of the rates of the actors' Adam.
     pub actor_rate: f32,
     /// Seconds of rollout, gradient steps and discriminators.
     pub secs: [f32; 3],
@@ -93,6 +97,7 @@ impl Training {
             rollout: Rollout::new(shape, (POLICY_INPUT_LEN, stage.critic_inputs()), DOF_COUNT),
             judged: vec![0.0; shape.0 * shape.1 * DISCRIMINATOR_INPUT_LEN],
             samples: 0,
+            environment: recipe.environment.clone(),
             recipe,
             learner,
             judges,
@@ -148,7 +153,7 @@ impl Training {
         }
         let demonstrations = self.judges.demonstrations();
         let stage = Stage {
-            config: &self.recipe.environment,
+            config: &self.environment,
             course: &self.course,
             demonstrations: &demonstrations,
             start_demonstrations: self.start_demonstrations.as_ref(),
@@ -166,6 +171,8 @@ impl Training {
         self.choose_ground()?;
         let phase = self.recipe.phase_at(self.samples).1;
         self.learner.config.deviation = phase.deviation.unwrap_or(self.recipe.ppo.deviation);
+        self.environment.episode_ticks = phase.episode_ticks.unwrap_or(self.recipe.environment.episode_ticks);
+        self.environment.start.ragdoll = phase.ragdoll.unwrap_or(self.recipe.environment.start.ragdoll);
         let start = std::time::Instant::now();
         self.roll_out();
         let rolled = start.elapsed();
@@ -182,7 +189,7 @@ impl Training {
             update,
             discriminator,
             distance: self.learner.distance_to_parent(),
-            actor_rate: self.learner.actor_rate,
+            actor_rate: self.learner.actor_rate(),
             secs: [
                 rolled.as_secs_f32(),
                 (start.elapsed() - judged).as_secs_f32(),
@@ -195,7 +202,7 @@ impl Training {
         let n = self.rollout.characters;
         let demonstrations = self.judges.demonstrations();
         let stage = Stage {
-            config: &self.recipe.environment,
+            config: &self.environment,
             course: &self.course,
             demonstrations: &demonstrations,
             start_demonstrations: self.start_demonstrations.as_ref(),

@@ -150,7 +150,7 @@ fn restore(training: &mut Training, checkpoint: &Checkpoint, path: &Path) -> Res
         adam.clone_from(&trained.adam);
     }
     training.samples = checkpoint.progress.samples;
-    training.learner.actor_rate = checkpoint.progress.actor_rate;
+    training.learner.actors.iter_mut().for_each(|a| a.rate = checkpoint.progress.actor_rate);
     training.learner.rng = checkpoint.progress.rng;
     Ok(checkpoint.progress.secs)
 }

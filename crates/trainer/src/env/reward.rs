@@ -51,7 +51,8 @@ pub fn standing_reward(state: &CharacterState) -> RewardTerms {
     let speed = state.body(Body::Pelvis).linear_velocity.truncate().length();
     let height = 0.5 * (pelvis + head);
     let still = if height > 0.9 { (-speed * speed).exp() } else { 0.0 };
-    RewardTerms { task: 0.5 * height * height + 0.3 * height * up + 0.2 * still, ..RewardTerms::default() }
+    // Linear in the height, so that the first centimetres off the ground pay as well as the last.
+    RewardTerms { task: 0.5 * height + 0.3 * height * up + 0.2 * still, ..RewardTerms::default() }
 }
 
 #[cfg(test)]
@@ -74,6 +75,18 @@ mod tests {
         assert!(at(1.5) - at(1.3) > 0.02, "{} {}", at(1.5), at(1.3));
         let at = |speed: f32| target_reward(&state, Vec2::new(speed, 0.0), Vec2::new(5.0, 0.0), 0.0).task;
         assert!(at(1.2) - at(1.4) > 0.02, "{} {}", at(1.2), at(1.4));
+    }
+
+    #[test]
+    fn every_centimetre_off_the_ground_pays() {
+        let at = |metres: f32| {
+            let mut state = CharacterState::default();
+            state.bodies[Body::Pelvis.index()].position.z = metres;
+            state.bodies[Body::Head.index()].position.z = 1.5 * metres;
+            standing_reward(&state).task
+        };
+        assert!(at(0.2) - at(0.1) > 0.05, "{} {}", at(0.2), at(0.1));
+        assert!((at(0.9) - 1.0).abs() < 1e-6);
     }
 
     #[test]

@@ -9,8 +9,9 @@ use policy_core::{BlendMode, CharacterPack, CharacterState};
 use serde::Serialize;
 
 use super::{
-    Effort, LayerReport, MotionReport, UprightReport, choices, measure_coordinates, measure_get_up,
-    measure_layers, measure_push, measure_roll, measure_sweep, measure_upright, pose_error, watch,
+    Effort, LayerReport, MotionReport, RateReport, UprightReport, choices, measure_coordinates,
+    measure_get_up, measure_layers, measure_push, measure_roll, measure_sweep, measure_upright, pose_error,
+    watch,
 };
 
 /// All measures of a pack.
@@ -72,15 +73,6 @@ pub struct SpeedPoint {
     pub reached_mps: f32,
     /// With random turns.
     pub falls_per_character_minute: f32,
-}
-
-/// A share of tries that went well.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
-pub struct RateReport {
-    /// 0 to 1.
-    pub success: f32,
-    /// Tries.
-    pub tries: usize,
 }
 
 /// Largest pushes of 0.2 s that 95 of 100 survive, in steps of 15 N.
@@ -164,9 +156,8 @@ pub fn evaluate(
         evaluation.layers.values().flat_map(|e| e.values().map(|r| r.without_fall)).collect();
     evaluation.layers_without_fall = cases.iter().sum::<f32>() / cases.len().max(1) as f32;
     note("get-up and roll");
-    let rate = |success| RateReport { success, tries: effort.drops };
-    evaluation.getup = measure_get_up(model, pack, "get_up", effort.drops).map(rate);
-    evaluation.roll = measure_roll(model, pack, "roll", effort.drops).map(rate);
+    evaluation.getup = measure_get_up(model, pack, "get_up", effort.drops);
+    evaluation.roll = measure_roll(model, pack, "roll", effort.drops);
     evaluation
 }
 

@@ -9,6 +9,7 @@ use policy_core::{
     TARGET_RANGE_METRES,
 };
 use rayon::prelude::*;
+use serde::Serialize;
 
 use super::subject::{SETTLE_SECS, Subject};
 use crate::Rng;
@@ -20,34 +21,69 @@ const GET_UP_SECS: f32 = 5.0;
 /// Seconds within which a roll must be over.
 const ROLL_SECS: f32 = 3.0;
 
-/// Share of limp drops after which the character stands within 5 s and still does a second later. `None` when the pack
-/// has no skill of this name.
-#[must_use]
-pub fn measure_get_up(model: &Model, pack: &Arc<CharacterPack>, skill: &str, drops: usize) -> Option<f32> {
-    let skill = pack.skill_named(skill)?;
-    let up = (0..drops).into_par_iter().filter(|i| gets_up(model, pack, skill, *i as u64)).count();
-    Some(up as f32 / drops.max(1) as f32)
+/// A share of tries that went well.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
+pub struct RateReport {
+    /// 0 to 1.
+    pub success: f32,
+    /// Tries.
+    pub tries: usize,
+    /// Share that the discriminator ended, not the time limit.
+    pub recognised: f32,
+    /// Mean seconds until it did.
+    pub seconds: f32,
 }
 
-fn gets_up(model: &Model, pack: &Arc<CharacterPack>, skill: usize, seed: u64) -> bool {
+impl RateReport {
+    /// Of tries, each with whether it went well and the seconds after which the discriminator ended it, if it did.
+    fn of(tries: &[(bool, Option<f32>)]) -> Self {
+        let count = tries.len().max(1) as f32;
+        let ended: Vec<f32> = tries.iter().filter_map(|(_, secs)| *secs).collect();
+        Self {
+            success: tries.iter().filter(|(well, _)| *well).count() as f32 / count,
+            tries: tries.len(),
+            recognised: ended.len() as f32 / count,
+            seconds: ended.iter().sum::<f32>() / ended.len().max(1) as f32,
+        }
+    }
+}
+
+/// Limp drops after which the character stands within 5 s and still does a second later. `None` when the pack has no skill
+/// of this name.
+#[must_use]
+pub fn measure_get_up(
+    model: &Model,
+    pack: &Arc<CharacterPack>,
+    skill: &str,
+    drops: usize,
+) -> Option<RateReport> {
+    let skill = pack.skill_named(skill)?;
+    let tries: Vec<_> = (0..drops).into_par_iter().map(|i| gets_up(model, pack, skill, i as u64)).collect();
+    Some(RateReport::of(&tries))
+}
+
+fn gets_up(model: &Model, pack: &Arc<CharacterPack>, skill: usize, seed: u64) -> (bool, Option<f32>) {
     let mut subject = Subject::new(model, pack, "idle");
     let mut rng = Rng::new(seed, 11);
     if !drop_limp(&mut subject, &mut rng) {
-        return false;
+        return (false, None);
     }
     let mut command = Command { skill: Some(skill), ..Command::default() };
-    let mut stood = 0.0;
-    for _ in 0..((GET_UP_SECS + 1.0) / DT_SECS) as u32 {
+    let (mut stood, mut ended) = (0.0, None);
+    for tick in 0..((GET_UP_SECS + 1.0) / DT_SECS) as u32 {
         if !subject.tick(&command) {
-            return false;
+            return (false, ended);
         }
         command.skill = None;
+        if let Some((_, SkillEnd::Recognised)) = subject.controller.report().skill_ended {
+            ended = Some(tick as f32 * DT_SECS);
+        }
         let up = subject.pelvis_height() > 0.65
             && subject.state.body(Body::Head).position.z - subject.state.ground_height > 1.1;
         stood = if up { stood + DT_SECS } else { 0.0 };
     }
     // Up at the end, and so since five seconds after the drop.
-    stood >= 1.0
+    (stood >= 1.0, ended)
 }
 
 /// Drops the character in a random attitude, limp, and lets it come to rest for two seconds.
@@ -121,32 +157,37 @@ pub fn watch_skill(
     states
 }
 
-/// Share of rolls out of a walk that the discriminator ends within 3 s and after which the character still walks a second
-/// later. `None` when the pack has no skill of this name.
+/// Rolls out of a walk that the discriminator ends within 3 s and after which the character still walks a second later.
+/// `None` when the pack has no skill of this name.
 #[must_use]
-pub fn measure_roll(model: &Model, pack: &Arc<CharacterPack>, skill: &str, rolls: usize) -> Option<f32> {
+pub fn measure_roll(
+    model: &Model,
+    pack: &Arc<CharacterPack>,
+    skill: &str,
+    rolls: usize,
+) -> Option<RateReport> {
     let skill = pack.skill_named(skill)?;
-    let done = (0..rolls).into_par_iter().filter(|i| rolls_over(model, pack, skill, *i as u64)).count();
-    Some(done as f32 / rolls.max(1) as f32)
+    let tries: Vec<_> =
+        (0..rolls).into_par_iter().map(|i| rolls_over(model, pack, skill, i as u64)).collect();
+    Some(RateReport::of(&tries))
 }
 
-fn rolls_over(model: &Model, pack: &Arc<CharacterPack>, skill: usize, seed: u64) -> bool {
+fn rolls_over(model: &Model, pack: &Arc<CharacterPack>, skill: usize, seed: u64) -> (bool, Option<f32>) {
     let back = pack.skills()[skill].returns_to;
     let mut subject = Subject::new(model, pack, &pack.graph().nodes()[back].name);
     let mut rng = Rng::new(seed, 13);
     let start = ((SETTLE_SECS + rng.range(0.0, 1.0)) / DT_SECS) as u32;
-    let mut recognised = None;
+    let mut ended = None;
     for tick in 0..start + ((ROLL_SECS + 1.0) / DT_SECS) as u32 {
         let target = Some(subject.position() + Vec2::new(TARGET_RANGE_METRES, 0.0));
         let skill = (tick == start).then_some(skill);
         let command = Command { target, goal: Goal::Node(back), skill, ..Command::default() };
         if !subject.tick(&command) || (tick < start && subject.controller.report().fallen) {
-            return false;
+            return (false, ended);
         }
         if let Some((_, SkillEnd::Recognised)) = subject.controller.report().skill_ended {
-            recognised = Some(tick);
+            ended = Some((tick - start) as f32 * DT_SECS);
         }
     }
-    let in_time = |tick: u32| (tick - start) as f32 * DT_SECS <= ROLL_SECS;
-    recognised.is_some_and(in_time) && subject.pelvis_height() > 0.65
+    (ended.is_some_and(|secs| secs <= ROLL_SECS) && subject.pelvis_height() > 0.65, ended)
 }

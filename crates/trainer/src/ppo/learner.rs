@@ -59,19 +59,21 @@ pub struct Actor {
     pub parent: Option<usize>,
     /// True when it stays as it is.
     pub frozen: bool,
+    /// Rate of its Adam now.
+    pub rate: f32,
 }
 
 impl Actor {
     /// A policy that learns, pulled towards its parent if it has one.
     #[must_use]
     pub fn learning(network: Network, parent: Option<usize>) -> Self {
-        Self { adam: Adam::new(network.parameters.len()), network, parent, frozen: false }
+        Self { adam: Adam::new(network.parameters.len()), network, parent, frozen: false, rate: 0.0 }
     }
 
     /// A policy that stays as it is.
     #[must_use]
     pub fn frozen(network: Network) -> Self {
-        Self { adam: Adam::new(network.parameters.len()), network, parent: None, frozen: true }
+        Self { adam: Adam::new(network.parameters.len()), network, parent: None, frozen: true, rate: 0.0 }
     }
 }
 
@@ -87,14 +89,13 @@ pub struct Learner {
     pub edges: Vec<[usize; 2]>,
     /// Guesses returns, scaled by `1 - gamma`, from policy inputs and the place on the course.
     pub critic: Network,
-    /// Rate of the actors' Adam now.
-    pub actor_rate: f32,
     /// The critic's optimiser.
     pub critic_adam: Adam,
     /// Draws actions and shuffles rows.
     pub rng: Rng,
     pub(super) lanes: Vec<Lane>,
     pub(super) order: Vec<u32>,
+    pub(super) divergence: Vec<[f32; 2]>,
     gathered: Gathered,
     actor_batch: BatchEvaluator,
     critic_batch: BatchEvaluator,
@@ -118,23 +119,24 @@ impl Learner {
     #[must_use]
     pub fn new(
         config: PpoConfig,
-        actors: Vec<Actor>,
+        mut actors: Vec<Actor>,
         edges: Vec<[usize; 2]>,
         critic: Network,
         rng: Rng,
     ) -> Self {
+        actors.iter_mut().for_each(|a| a.rate = config.actor_rate);
         let first = &actors.first().expect("a learner has an actor").network;
         assert!(actors.iter().all(|a| a.network.sizes() == first.sizes()), "sizes of the actors");
         let named = edges.iter().flatten().copied().chain(actors.iter().filter_map(|a| a.parent));
         assert!(named.max().is_none_or(|most| most < actors.len()), "actors of edges and parents");
         let lane = Lane::new((&actors, &edges), &critic, config.minibatch.div_ceil(Lane::COUNT));
         Self {
-            actor_rate: config.actor_rate,
             critic_adam: Adam::new(critic.parameters.len()),
             actor_batch: BatchEvaluator::new(first.sizes()),
             critic_batch: BatchEvaluator::new(critic.sizes()),
             lanes: vec![lane; Lane::COUNT],
             order: Vec::new(),
+            divergence: vec![[0.0; 2]; actors.len()],
             gathered: Gathered::default(),
             bootstrap: Vec::new(),
             config,
@@ -210,6 +212,14 @@ impl Learner {
         rollout.estimate_advantages(self.config.gamma, self.config.gae_lambda, last, cut_off);
         rollout.normalise_advantages();
         self.bootstrap = after;
+    }
+
+    /// Geometric mean of the rates of the actors that learn.
+    #[must_use]
+    pub fn actor_rate(&self) -> f32 {
+        let learning = self.actors.iter().filter(|a| !a.frozen);
+        let (sum, count) = learning.fold((0.0, 0.0_f32), |(sum, count), a| (sum + a.rate.ln(), count + 1.0));
+        (sum / count.max(1.0)).exp()
     }
 
     /// Mean squared distance of the actors that have a parent to its parameters; zero without one.

@@ -34,6 +34,8 @@ pub(super) struct Lane {
     /// One for each actor.
     actor_gradients: Vec<Vec<f32>>,
     critic_gradient: Vec<f32>,
+    /// Divergence and weight of the rows of each actor.
+    divergence: Vec<[f32; 2]>,
     sums: UpdateReport,
 }
 
@@ -52,6 +54,7 @@ impl Lane {
             groups: vec![Vec::new(); edges.len()],
             actor_gradients: vec![vec![0.0; actor.parameters.len()]; actors.len()],
             critic_gradient: vec![0.0; critic.parameters.len()],
+            divergence: vec![[0.0; 2]; actors.len()],
             sums: UpdateReport::default(),
         }
     }
@@ -59,6 +62,7 @@ impl Lane {
     fn accumulate(&mut self, shared: &Shared<'_>, rows: &[u32]) {
         self.actor_gradients.iter_mut().for_each(|g| g.fill(0.0));
         self.critic_gradient.fill(0.0);
+        self.divergence.fill([0.0; 2]);
         self.sums = UpdateReport::default();
         self.groups.iter_mut().for_each(Vec::clear);
         for row in rows {
@@ -89,8 +93,13 @@ impl Lane {
         let actions = network.outputs();
         let (means, deltas) = self.actor.output_and_delta(rows.len());
         let pairs = means.chunks_exact(actions).zip(deltas.chunks_exact_mut(actions));
-        for (row, (mean, delta)) in rows.iter().zip(pairs) {
-            shared.policy_gradient(*row as usize, mean, delta, &mut self.sums);
+        for ((row, t), (mean, delta)) in rows.iter().zip(&self.blend).zip(pairs) {
+            let kl = shared.policy_gradient(*row as usize, mean, delta, &mut self.sums);
+            let t = if from == to { 1.0 } else { *t };
+            for (actor, weight) in [(from, 1.0 - t), (to, t)] {
+                self.divergence[actor][0] += weight * kl;
+                self.divergence[actor][1] += weight;
+            }
         }
         let (gradient, parent) = match self.actor_gradients.get_disjoint_mut([from, to]) {
             Ok([parent, gradient]) => (gradient, Some(parent).filter(|_| !shared.actors[from].frozen)),
@@ -130,33 +139,36 @@ struct Shared<'a> {
 }
 
 impl Shared<'_> {
-    /// Gradient of the clipped surrogate (PPO, equation 7) and of the bound by the mean action of one row.
-    fn policy_gradient(&self, row: usize, mean: &[f32], delta: &mut [f32], sums: &mut UpdateReport) {
+    /// Gradient of the clipped surrogate (PPO, equation 7) and of the bound by the mean action of one row; returns the
+    /// row's divergence.
+    fn policy_gradient(&self, row: usize, mean: &[f32], delta: &mut [f32], sums: &mut UpdateReport) -> f32 {
         let numbers = row * mean.len()..(row + 1) * mean.len();
         let (action, acted) = (&self.rollout.actions[numbers.clone()], &self.rollout.means[numbers]);
         let now = log_probability(action, mean, self.deviation);
         let ratio = (now - log_probability(action, acted, self.deviation)).clamp(-20.0, 20.0).exp();
         let advantage = self.rollout.advantages[row];
         let stopped = if advantage > 0.0 { ratio > 1.0 + self.clip } else { ratio < 1.0 - self.clip };
-        sums.kl += kl_divergence(mean, acted, self.deviation);
+        let kl = kl_divergence(mean, acted, self.deviation);
+        sums.kl += kl;
         sums.clipped += f32::from(u8::from((ratio - 1.0).abs() > self.clip));
         let slope = if stopped { 0.0 } else { -advantage * ratio / (self.deviation * self.deviation) };
         for ((d, m), a) in delta.iter_mut().zip(mean).zip(action) {
             let excess = (m.abs() - 1.0).max(0.0).copysign(*m);
             *d = (slope * (a - m) + 2.0 * self.bound_penalty * excess) * self.scale;
         }
+        kl
     }
 }
 
 impl Learner {
-    /// Takes the gradient steps of all epochs and steers the actor's rate by the divergence they cause.
+    /// Takes the gradient steps of all epochs and steers each actor's rate by the divergence of its rows that they cause.
     pub fn update(&mut self, rollout: &Rollout) -> UpdateReport {
         let rows = u32::try_from(rollout.rows()).expect("a rollout has fewer than 2^32 rows");
         self.order.clear();
         self.order.extend(0..rows);
         let mut total = UpdateReport::default();
         let mut steps = 0.0;
-        let mut last_epoch = (0.0, 0.0);
+        self.divergence.fill([0.0; 2]);
         for epoch in 0..self.config.epochs {
             for i in (1..self.order.len()).rev() {
                 let other = self.rng.index(i + 1);
@@ -166,7 +178,11 @@ impl Learner {
             for minibatch in order.chunks(self.config.minibatch) {
                 let report = self.gradient_step(rollout, minibatch);
                 if epoch + 1 == self.config.epochs {
-                    last_epoch = (last_epoch.0 + report.kl, last_epoch.1 + 1.0);
+                    for lane in &self.lanes[..self.used_lanes(minibatch.len())] {
+                        for (sum, more) in self.divergence.iter_mut().zip(&lane.divergence) {
+                            *sum = [sum[0] + more[0], sum[1] + more[1]];
+                        }
+                    }
                 }
                 total.kl += report.kl;
                 total.value_error += report.value_error;
@@ -176,7 +192,7 @@ impl Learner {
             }
             self.order = order;
         }
-        self.steer_rate(last_epoch.0 / last_epoch.1);
+        self.steer_rates();
         for value in [&mut total.kl, &mut total.value_error, &mut total.clipped, &mut total.gradient_norm] {
             *value /= steps;
         }
@@ -196,7 +212,7 @@ impl Learner {
             scale: 1.0 / minibatch.len() as f32,
         };
         let share = minibatch.len().div_ceil(Lane::COUNT);
-        let used = minibatch.len().div_ceil(share);
+        let used = self.used_lanes(minibatch.len());
         self.lanes[..used]
             .par_iter_mut()
             .zip(minibatch.par_chunks(share))
@@ -214,11 +230,11 @@ impl Learner {
         report.scale(1.0 / minibatch.len() as f32);
         for (index, gradient) in first.actor_gradients.iter_mut().enumerate() {
             pull_to_parent(&self.actors, index, self.config.regularisation, gradient);
-            let Actor { network, adam, frozen, .. } = &mut self.actors[index];
+            let Actor { network, adam, frozen, rate, .. } = &mut self.actors[index];
             if !*frozen {
                 let norm = clip_norm(gradient, self.config.gradient_norm);
                 report.gradient_norm = report.gradient_norm.max(norm);
-                adam.step(&mut network.parameters, gradient, self.actor_rate, 0.0);
+                adam.step(&mut network.parameters, gradient, *rate, 0.0);
             }
         }
         clip_norm(&mut first.critic_gradient, self.config.gradient_norm);
@@ -227,14 +243,22 @@ impl Learner {
         report
     }
 
-    fn steer_rate(&mut self, kl: f32) {
+    fn used_lanes(&self, rows: usize) -> usize {
+        rows.div_ceil(rows.div_ceil(Lane::COUNT))
+    }
+
+    /// Steers the rate of every actor that had rows by their mean divergence.
+    fn steer_rates(&mut self) {
         let config = &self.config;
-        if kl > 1.5 * config.target_kl {
-            self.actor_rate /= 1.3;
-        } else if kl < config.target_kl / 1.5 {
-            self.actor_rate *= 1.3;
+        for (actor, [sum, weight]) in self.actors.iter_mut().zip(&self.divergence) {
+            let kl = sum / weight;
+            if kl > 1.5 * config.target_kl {
+                actor.rate /= 1.3;
+            } else if kl < config.target_kl / 1.5 {
+                actor.rate *= 1.3;
+            }
+            actor.rate = actor.rate.clamp(config.least_actor_rate, config.most_actor_rate);
         }
-        self.actor_rate = self.actor_rate.clamp(config.least_actor_rate, config.most_actor_rate);
     }
 }
 
