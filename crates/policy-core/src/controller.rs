@@ -179,7 +179,7 @@ impl Controller {
         let Some(mut progress) = self.report.skill else { return };
         let skill = &self.pack.skills()[progress.skill];
         let score = skill.discriminator.and_then(|d| self.judge.score(&self.pack, d, state));
-        let Some(end) = progress.tick(&skill.end, score, dt) else {
+        let Some(end) = progress.tick(&skill.end, score, pelvis_height(state), dt) else {
             self.report.skill = Some(progress);
             return;
         };

@@ -228,6 +228,7 @@ fn check_end(end: &EndCondition, owner: String) -> Result<(), PackError> {
         ("minimum_seconds", end.minimum_seconds, end.limit_seconds, "0 to the limit"),
         ("limit_seconds", end.limit_seconds, 600.0, "0 to 600"),
         ("ticks", end.ticks as f32, 1e4, "1 to 10000"),
+        ("minimum_height", end.minimum_height, 10.0, "0 to 10"),
     ];
     for (field, found, most, expected) in checks {
         let least = if field == "ticks" { 1.0 } else { 0.0 };

@@ -20,6 +20,10 @@ pub struct EndCondition {
     pub minimum_seconds: f32,
     /// The end in any case, seconds.
     pub limit_seconds: f32,
+    /// Nothing is counted while the pelvis is lower than this above the ground, metres: a discriminator knows the motion
+    /// it returns to and what comes near it, not a heap of limbs. 0 for no such condition.
+    #[serde(default)]
+    pub minimum_height: f32,
 }
 
 /// An episodic skill of a pack.
@@ -78,12 +82,19 @@ impl SkillProgress {
         Self { skill, seconds: 0.0, counted: 0, score: None }
     }
 
-    /// Takes one control tick and the discriminator's score, if there is one; says whether the skill ends.
-    pub fn tick(&mut self, end: &EndCondition, score: Option<f32>, dt_secs: f32) -> Option<SkillEnd> {
+    /// Takes one control tick, the discriminator's score, if there is one, and the pelvis' height above the ground, metres;
+    /// says whether the skill ends.
+    pub fn tick(
+        &mut self,
+        end: &EndCondition,
+        score: Option<f32>,
+        pelvis_height: f32,
+        dt_secs: f32,
+    ) -> Option<SkillEnd> {
         self.seconds += dt_secs;
         self.score = score;
         let release = end.threshold - end.hysteresis;
-        self.counted = match score {
+        self.counted = match score.filter(|_| pelvis_height >= end.minimum_height) {
             Some(s) if s >= end.threshold || (self.counted > 0 && s >= release) => self.counted + 1,
             _ => 0,
         };
@@ -101,13 +112,20 @@ impl SkillProgress {
 mod tests {
     use super::*;
 
-    const END: EndCondition =
-        EndCondition { threshold: 0.6, hysteresis: 0.2, ticks: 3, minimum_seconds: 0.2, limit_seconds: 2.0 };
+    const END: EndCondition = EndCondition {
+        threshold: 0.6,
+        hysteresis: 0.2,
+        ticks: 3,
+        minimum_seconds: 0.2,
+        limit_seconds: 2.0,
+        minimum_height: 0.7,
+    };
+    const UP: f32 = 0.8;
     const DT: f32 = 0.1;
 
     fn run(scores: &[f32]) -> Option<(usize, SkillEnd)> {
         let mut progress = SkillProgress::start(0);
-        scores.iter().enumerate().find_map(|(i, s)| progress.tick(&END, Some(*s), DT).map(|end| (i, end)))
+        scores.iter().enumerate().find_map(|(i, s)| progress.tick(&END, Some(*s), UP, DT).map(|end| (i, end)))
     }
 
     #[test]
@@ -124,8 +142,18 @@ mod tests {
     fn it_does_not_end_before_the_minimum_and_always_at_the_limit() {
         let mut progress = SkillProgress::start(0);
         let end = EndCondition { minimum_seconds: 1.0, ..END };
-        let at = (0..).find(|_| progress.tick(&end, Some(1.0), DT).is_some());
+        let at = (0..).find(|_| progress.tick(&end, Some(1.0), UP, DT).is_some());
         assert!(at == Some(9) || at == Some(10), "{at:?}");
         assert_eq!(run(&[f32::NAN; 30]).map(|(_, end)| end), Some(SkillEnd::TimeLimit));
+    }
+
+    #[test]
+    fn it_does_not_end_on_the_ground_whatever_the_score() {
+        let mut progress = SkillProgress::start(0);
+        for _ in 0..10 {
+            assert_eq!(progress.tick(&END, Some(1.0), 0.2, DT), None);
+        }
+        let up = (1..).find(|_| progress.tick(&END, Some(1.0), UP, DT).is_some());
+        assert_eq!(up, Some(3));
     }
 }

@@ -8,6 +8,8 @@ use crate::amp::DiscriminatorConfig;
 use crate::env::EnvironmentConfig;
 use crate::ppo::PpoConfig;
 
+mod checks;
+
 /// How one skill is trained.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -138,146 +140,6 @@ impl Recipe {
             }
         }
         Ok(recipe)
-    }
-
-    fn checks(&self) -> Vec<(bool, &'static str, &'static str, String)> {
-        let (env, ppo, disc) = (&self.environment, &self.ppo, &self.discriminator);
-        let plain = |s: &str| {
-            !s.is_empty() && s.chars().all(|c| c.is_ascii_lowercase() || c.is_ascii_digit() || c == '_')
-        };
-        let unit = |x: f32| (0.0..=1.0).contains(&x);
-        let positive = |x: f32| x.is_finite() && x > 0.0;
-        let ordered = |[a, b]: [f32; 2]| a.is_finite() && b.is_finite() && 0.0 <= a && a <= b;
-        vec![
-            (plain(&self.skill), "skill", "lower-case letters, digits and underscores", self.skill.clone()),
-            (!self.edge || self.parent.is_some(), "edge", "a parent beside it", "none".into()),
-            (
-                self.clips.is_empty() != self.paths.is_empty(),
-                "clips",
-                "at least one clip, or paths instead",
-                format!("{} clips and {} paths", self.clips.len(), self.paths.len()),
-            ),
-            (
-                self.paths.is_empty() || self.parent.is_none(),
-                "parent",
-                "none beside paths",
-                self.parent.clone().unwrap_or_default(),
-            ),
-            (
-                self.paths.iter().all(|p| p.len() > 1),
-                "paths",
-                "at least two skills in each",
-                format!("{:?}", self.paths),
-            ),
-            (
-                self.clips.iter().all(|c| positive(c.share)),
-                "clips.share",
-                "positive shares",
-                format!("{:?}", self.clips),
-            ),
-            (
-                self.phases
-                    .iter()
-                    .all(|p| p.terrain_metres == 0.0 || (0.01..=0.5).contains(&p.terrain_metres)),
-                "phases.terrain_metres",
-                "0, or 0.01 to 0.5",
-                format!("{:?}", self.phases),
-            ),
-            (
-                env.push_secs >= 0.0 && (0.0..=5000.0).contains(&env.push_newton),
-                "environment.push_secs and push_newton",
-                "a time of at least 0, and 0 to 5000 newton",
-                format!("{} and {}", env.push_secs, env.push_newton),
-            ),
-            (!self.phases.is_empty(), "phases", "at least one phase", "none".into()),
-            (
-                self.phases.iter().all(|p| unit(p.task)),
-                "phases.task",
-                "a weight in [0, 1]",
-                format!("{:?}", self.phases),
-            ),
-            (
-                (1..=65_536).contains(&env.characters),
-                "environment.characters",
-                "1 to 65536",
-                env.characters.to_string(),
-            ),
-            ((1..=1024).contains(&env.steps), "environment.steps", "1 to 1024", env.steps.to_string()),
-            (
-                env.episode_ticks > 0 && self.phases.iter().all(|p| p.episode_ticks != Some(0)),
-                "episode_ticks",
-                "at least 1",
-                "0".into(),
-            ),
-            (env.speed_mps.is_finite(), "environment.speed_mps", "a finite speed", env.speed_mps.to_string()),
-            (
-                ordered(env.target_metres),
-                "environment.target_metres",
-                "least and most distance",
-                format!("{:?}", env.target_metres),
-            ),
-            (
-                ordered(env.target_secs),
-                "environment.target_secs",
-                "least and most time",
-                format!("{:?}", env.target_secs),
-            ),
-            (
-                [env.stop, env.stick, env.jump, env.start.other, env.start.anywhere, env.start.ragdoll]
-                    .into_iter()
-                    .all(unit),
-                "environment.stop, stick, jump and start",
-                "shares in [0, 1]",
-                format!("{}, {}, {} and {:?}", env.stop, env.stick, env.jump, env.start),
-            ),
-            (
-                ordered(env.edge_sweep_secs)
-                    && env.edge_sweep_secs[0] > 0.0
-                    && (0.0..60.0).contains(&env.edge_secs),
-                "environment.edge_sweep_secs and edge_secs",
-                "least and most time above 0, and 0 to 60 s",
-                format!("{:?} and {}", env.edge_sweep_secs, env.edge_secs),
-            ),
-            ((0.0..1.0).contains(&ppo.gamma), "ppo.gamma", "a discount in [0, 1)", ppo.gamma.to_string()),
-            (unit(ppo.gae_lambda), "ppo.gae_lambda", "a discount in [0, 1]", ppo.gae_lambda.to_string()),
-            (positive(ppo.deviation), "ppo.deviation", "a positive deviation", ppo.deviation.to_string()),
-            (
-                self.phases.iter().all(|p| p.deviation.is_none_or(positive) && p.ragdoll.is_none_or(unit)),
-                "phases.deviation and ragdoll",
-                "a positive deviation and a share in [0, 1]",
-                format!("{:?}", self.phases),
-            ),
-            (
-                ppo.epochs > 0 && ppo.minibatch > 0,
-                "ppo.epochs and minibatch",
-                "at least 1",
-                format!("{} and {}", ppo.epochs, ppo.minibatch),
-            ),
-            (
-                positive(ppo.actor_rate) && positive(ppo.critic_rate),
-                "ppo.actor_rate and critic_rate",
-                "positive rates",
-                format!("{} and {}", ppo.actor_rate, ppo.critic_rate),
-            ),
-            (
-                ppo.regularisation >= 0.0,
-                "ppo.regularisation",
-                "a weight of at least 0",
-                ppo.regularisation.to_string(),
-            ),
-            (
-                !ppo.critic_hidden.is_empty() && !disc.hidden.is_empty(),
-                "hidden",
-                "at least one hidden layer",
-                "none".into(),
-            ),
-            (
-                disc.rows > 0 && disc.replay > 0,
-                "discriminator.rows and replay",
-                "at least 1",
-                format!("{} and {}", disc.rows, disc.replay),
-            ),
-        ]
     }
 
     /// Samples of all phases.

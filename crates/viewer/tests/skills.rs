@@ -31,7 +31,14 @@ fn discriminator() -> Mlp {
 fn pack(threshold: f32) -> CharacterPack {
     let ships = CharacterPack::from_bytes(assets::HUMANOID_PACK).unwrap();
     let (mut manifest, mut tensors) = (ships.manifest().clone(), ships.tensors().clone());
-    let end = EndCondition { threshold, hysteresis: 0.1, ticks: 5, minimum_seconds: 0.2, limit_seconds: 1.5 };
+    let end = EndCondition {
+        threshold,
+        hysteresis: 0.1,
+        ticks: 5,
+        minimum_seconds: 0.2,
+        limit_seconds: 1.5,
+        minimum_height: 0.0,
+    };
     let skill = |name: &str, policy: &str, entry: &[&str], discriminator: Option<&str>| SkillEntry {
         name: name.into(),
         policy: policy.into(),

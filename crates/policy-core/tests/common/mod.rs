@@ -49,8 +49,14 @@ pub fn manifest() -> Manifest {
         name: name.into(),
         nodes: nodes.iter().map(|n| (*n).into()).collect(),
     };
-    let end =
-        EndCondition { threshold: 0.5, hysteresis: 0.1, ticks: 5, minimum_seconds: 0.2, limit_seconds: 3.0 };
+    let end = EndCondition {
+        threshold: 0.5,
+        hysteresis: 0.1,
+        ticks: 5,
+        minimum_seconds: 0.2,
+        limit_seconds: 3.0,
+        minimum_height: 0.0,
+    };
     let skill = |name: &str, entry: &[&str]| SkillEntry {
         name: name.into(),
         policy: "roll".into(),

@@ -3,8 +3,8 @@
 use rayon::prelude::*;
 
 use super::config::PpoConfig;
+use super::lane::Lane;
 use super::rollout::Rollout;
-use super::update::Lane;
 use crate::nn::{Adam, Line, Network, Pass};
 use crate::rng::Rng;
 

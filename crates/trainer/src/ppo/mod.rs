@@ -6,6 +6,7 @@
 
 mod config;
 mod gaussian;
+mod lane;
 mod learner;
 mod rollout;
 mod update;

@@ -1,6 +1,7 @@
 use super::super::{Done, PpoConfig};
 use super::*;
 use crate::Rng;
+use crate::nn::Network;
 
 const CHARACTERS: usize = 64;
 const STEPS: usize = 16;
