@@ -96,7 +96,7 @@ impl Command {
         self.stop = rng.chance(config.stop);
         if let Some(direction) = &mut self.stick {
             // A player turns by up to a quarter; at a start from standing and now and then he wants to go anywhere.
-            let anywhere = rng.chance(0.2);
+            let anywhere = rng.chance(0.1);
             *direction = if anywhere { rng.angle() } else { *direction + rng.range(-1.0, 1.0) * QUARTER };
             return;
         }
