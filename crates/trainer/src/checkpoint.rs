@@ -10,6 +10,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::Rng;
 use crate::nn::{Adam, Network};
+use crate::training::{AVERAGE, PARENT_DISCRIMINATOR};
 
 /// Version of the checkpoint format.
 const FORMAT: u32 = 1;
@@ -89,11 +90,16 @@ impl Checkpoint {
         Self { networks, progress: Progress { format: FORMAT, seed, samples, secs, actor_rate, rng, sizes } }
     }
 
-    /// The checkpoint without the optimisers' moments: a third of its size, enough to go on from, after a few
-    /// iterations of finding its pace again.
+    /// The checkpoint without the optimisers' moments, with the running means of policies in their place: a third of its
+    /// size, enough to go on from, after a few iterations of finding its pace again.
     #[must_use]
     pub fn slim(mut self) -> Self {
-        self.networks.remove("parent_discriminator");
+        self.networks.remove(PARENT_DISCRIMINATOR);
+        let means: Vec<String> = self.networks.keys().filter(|r| r.ends_with(AVERAGE)).cloned().collect();
+        for role in means {
+            let actor = format!("{}actor", role.strip_suffix(AVERAGE).unwrap_or_default());
+            self.networks.remove(&role).and_then(|mean| self.networks.insert(actor, mean));
+        }
         for trained in self.networks.values_mut() {
             trained.adam = Adam { mean: Vec::new(), square: Vec::new(), steps: 0 };
         }
@@ -240,10 +246,15 @@ mod tests {
     fn a_slim_checkpoint_keeps_the_parameters_alone() {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("a.safetensors");
-        checkpoint().slim().save(&path).unwrap();
+        let mut with_mean = checkpoint();
+        let mean = Network::new(&[3, 4, 2], 1.0, &mut Rng::new(9, 9));
+        let trained = Trained { network: mean.clone(), adam: Adam::new(26) };
+        with_mean.networks.insert("average".into(), trained);
+        with_mean.slim().save(&path).unwrap();
         let back = Checkpoint::load(&path).unwrap();
-        assert_eq!(back.networks["actor"].network, checkpoint().networks["actor"].network);
+        assert_eq!(back.networks["actor"].network, mean);
         assert_eq!(back.networks["actor"].adam, Adam::new(26));
+        assert_eq!(back.networks.len(), 1);
     }
 
     #[test]

@@ -13,6 +13,7 @@ use serde::Deserialize;
 use crate::checkpoint::{Checkpoint, CheckpointError};
 use crate::env::Normalisers;
 use crate::nn::Network;
+use crate::training::AVERAGE;
 
 /// What a pack is to hold: nodes, edges, paths and skills by name. A TOML file.
 #[derive(Clone, Debug, PartialEq, Deserialize)]
@@ -158,7 +159,11 @@ impl Ingredient {
         let recipe = if together { "joint recipe" } else { "recipe" };
         Ok(Self {
             skill: skill.into(),
-            actor: loaded.network(&role("actor"), path)?.network.clone(),
+            // The running mean where there is one: old checkpoints have the policy alone.
+            actor: match loaded.networks.get(&role(AVERAGE)) {
+                Some(average) => average.network.clone(),
+                None => loaded.network(&role("actor"), path)?.network.clone(),
+            },
             discriminator: loaded.network(&role("discriminator"), path)?.network.clone(),
             origin: format!(
                 "{recipe} {skill}, seed {}, {} samples, {:.0} s",

@@ -1,5 +1,7 @@
 //! What a run starts from: the networks, clips and course of a recipe, put together from the checkpoints of its parents.
 
+use std::path::PathBuf;
+
 use anyhow::{Context, Result, ensure};
 use policy_core::{DOF_COUNT, POLICY_INPUT_LEN};
 
@@ -9,6 +11,7 @@ use crate::checkpoint::Checkpoint;
 use crate::clip::ClipError;
 use crate::env::{Course, CourseNode, Demonstrations};
 use crate::nn::Network;
+use crate::pack::Ingredient;
 use crate::ppo::{Actor, Learner};
 use crate::recipe::Recipe;
 use crate::style::{Judge, Judges};
@@ -33,16 +36,32 @@ impl Workplace {
         if recipe.paths.is_empty() { self.skill_parts(recipe, seed) } else { self.joint_parts(recipe, seed) }
     }
 
+    /// Where a trained skill is: in its own run, else in one that trained it together with others.
+    fn trained(&self, name: &str) -> Result<Option<(Checkpoint, PathBuf)>> {
+        let own = self.newest(name);
+        if own.exists() {
+            return Ok(Some((Checkpoint::load(&own)?, own)));
+        }
+        for recipe in self.recipes_in_order()?.iter().filter(|r| r.paths.iter().flatten().any(|n| n == name))
+        {
+            let path = self.newest(&recipe.skill);
+            if path.exists() {
+                return Ok(Some((Checkpoint::load(&path)?, path)));
+            }
+        }
+        Ok(None)
+    }
+
     fn skill(&self, name: &str, needed_by: &str) -> Result<Skill> {
-        let path = self.newest(name);
-        let checkpoint = Checkpoint::load(&path)
+        let (checkpoint, path) = self
+            .trained(name)?
             .with_context(|| format!("{needed_by} starts from {name}, which is not trained yet"))?;
-        let network = |role: &str| checkpoint.network(role, &path).map(|t| t.network.clone());
+        let Ingredient { actor, discriminator, .. } = Ingredient::from_checkpoint(name, &checkpoint, &path)?;
         let recipe = self.recipe(name)?;
         Ok(Skill {
-            actor: network("actor")?,
-            critic: network("critic")?,
-            discriminator: network("discriminator")?,
+            actor,
+            critic: checkpoint.network("critic", &path)?.network.clone(),
+            discriminator,
             demonstrations: self.demonstrations(&recipe)?,
             recipe,
         })
@@ -111,7 +130,10 @@ impl Workplace {
         let sizes = critic_sizes(recipe, course.place_len());
         let mut rng = Rng::new(seed, 1);
         let critic = match root {
-            Some(root) if root.sizes()[1..] == sizes[1..] => widened(&root, course.place_len()),
+            Some(root) if root.sizes() == sizes => root,
+            Some(root) if root.inputs() == POLICY_INPUT_LEN + 1 && root.sizes()[1..] == sizes[1..] => {
+                widened(&root, course.place_len())
+            }
             _ => Network::new(&sizes, 0.1, &mut rng),
         };
         ensure!(critic.sizes() == sizes, "expected a critic of sizes {sizes:?}, found {:?}", critic.sizes());

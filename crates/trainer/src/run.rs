@@ -9,6 +9,7 @@ use std::time::Instant;
 use anyhow::{Result, bail};
 
 use crate::checkpoint::{Checkpoint, Trained};
+use crate::nn::Adam;
 use crate::plot;
 use crate::training::{IterationReport, Training};
 
@@ -76,7 +77,8 @@ impl Run {
         let training = &mut self.training;
         let mut networks = HashMap::new();
         for (role, network, adam) in training.networks_mut() {
-            networks.insert(role, Trained { network: network.clone(), adam: adam.clone() });
+            let adam = adam.map_or(Adam { mean: Vec::new(), square: Vec::new(), steps: 0 }, |a| a.clone());
+            networks.insert(role, Trained { network: network.clone(), adam });
         }
         let progress = (self.seed, training.samples, self.secs);
         let (rate, rng) = (training.learner.actor_rate(), training.learner.rng);

@@ -18,6 +18,9 @@ pub const POLICY_HIDDEN: [usize; 2] = [128, 32];
 /// Role of the discriminator that judges a parent's style, in a checkpoint.
 pub const PARENT_DISCRIMINATOR: &str = "parent_discriminator";
 
+/// Role of a policy's running mean, in a checkpoint.
+pub const AVERAGE: &str = "average";
+
 /// What a run starts from. Actors, judges and clips are in the order of the course's nodes.
 #[derive(Debug)]
 pub struct Parts {
@@ -111,9 +114,10 @@ impl Training {
         }
     }
 
-    /// Networks that learn, with their optimisers, by their roles in a checkpoint: `actor`, `discriminator`, `critic`;
-    /// where skills are trained together the first two have the skill's name before them, with a dot.
-    pub fn networks_mut(&mut self) -> Vec<(String, &mut Network, &mut Adam)> {
+    /// Networks that learn, with their optimisers, by their roles in a checkpoint: `actor`, its running mean `average`,
+    /// `discriminator`, `critic`; where skills are trained together all but the last have the skill's name before them,
+    /// with a dot.
+    pub fn networks_mut(&mut self) -> Vec<(String, &mut Network, Option<&mut Adam>)> {
         let together = !self.recipe.paths.is_empty();
         let last = self.course.nodes().len() - 1;
         let mut all = Vec::new();
@@ -122,14 +126,15 @@ impl Training {
         for (i, (node, (actor, judge))) in nodes.enumerate() {
             let role = |what: &str| if together { format!("{}.{what}", node.name) } else { what.to_owned() };
             if together || i == last {
-                all.push((role("actor"), &mut actor.network, &mut actor.adam));
+                all.push((role("actor"), &mut actor.network, Some(&mut actor.adam)));
+                all.push((role(AVERAGE), &mut actor.average, None));
             }
             if let Some(d) = &mut judge.discriminator {
                 let what = if together || i == last { "discriminator" } else { PARENT_DISCRIMINATOR };
-                all.push((role(what), &mut d.network, &mut d.adam));
+                all.push((role(what), &mut d.network, Some(&mut d.adam)));
             }
         }
-        all.push(("critic".to_owned(), &mut self.learner.critic, &mut self.learner.critic_adam));
+        all.push(("critic".to_owned(), &mut self.learner.critic, Some(&mut self.learner.critic_adam)));
         all
     }
 

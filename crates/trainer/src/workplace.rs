@@ -11,7 +11,7 @@ use crate::clip::ClipFolder;
 use crate::env::{Demonstrations, Normalisers};
 use crate::recipe::Recipe;
 use crate::run::{METRICS, Run};
-use crate::training::{PARENT_DISCRIMINATOR, Training};
+use crate::training::{AVERAGE, PARENT_DISCRIMINATOR, Training};
 
 /// Where everything a run reads and writes is.
 #[derive(Clone, Debug)]
@@ -133,11 +133,13 @@ impl Workplace {
 /// Puts a checkpoint's networks into a training; returns the seconds spent before.
 fn restore(training: &mut Training, checkpoint: &Checkpoint, path: &Path) -> Result<f64> {
     for (role, network, adam) in training.networks_mut() {
-        // What a parent's style is like can be learned anew.
-        if role == PARENT_DISCRIMINATOR && !checkpoint.networks.contains_key(&role) {
+        // What a parent's style is like can be learned anew; a running mean begins where the policy is.
+        let actor = role.strip_suffix(AVERAGE).map(|before| format!("{before}actor"));
+        let known = checkpoint.networks.contains_key(&role);
+        if role == PARENT_DISCRIMINATOR && !known {
             continue;
         }
-        let trained = checkpoint.network(&role, path)?;
+        let trained = checkpoint.network(actor.filter(|_| !known).as_deref().unwrap_or(&role), path)?;
         if trained.network.sizes() != network.sizes() {
             bail!(
                 "{}: expected a {role} of sizes {:?}, found {:?}",
@@ -147,7 +149,9 @@ fn restore(training: &mut Training, checkpoint: &Checkpoint, path: &Path) -> Res
             );
         }
         network.clone_from(&trained.network);
-        adam.clone_from(&trained.adam);
+        if let Some(adam) = adam {
+            adam.clone_from(&trained.adam);
+        }
     }
     training.samples = checkpoint.progress.samples;
     training.learner.actors.iter_mut().for_each(|a| a.rate = checkpoint.progress.actor_rate);

@@ -5,6 +5,7 @@ use std::sync::Arc;
 
 use physics_bridge::Model;
 use policy_core::{Arithmetic, BODY_NAMES, CharacterPack, DOF_COUNT, MlpScratch, POLICY_INPUT_LEN};
+use trainer::checkpoint::Checkpoint;
 use trainer::clip::ClipFolder;
 use trainer::env::Normalisers;
 use trainer::nn::{Network, Pass};
@@ -104,6 +105,8 @@ fn every_recipe_runs_and_binds_into_a_pack() {
         assert_eq!(metrics.lines().count(), 3, "{skill}");
     }
 
+    what_was_kept_is_enough_to_go_on(&workplace, folder.path());
+
     let plan = PackPlan::load(&project().join("assets/recipes/pack/humanoid.toml")).unwrap();
     let bytes = bind(&plan, &ingredients, &normalisers, &model).unwrap().to_bytes();
     let pack = Arc::new(CharacterPack::from_bytes(&bytes).unwrap());
@@ -113,6 +116,22 @@ fn every_recipe_runs_and_binds_into_a_pack() {
     let partial = plan.only(|skill| skill != "jog");
     assert!(partial.paths.iter().find(|p| p.name == "speed").is_some_and(|p| p.nodes == ["idle", "walk"]));
     bind(&partial, &ingredients, &normalisers, &model).unwrap();
+}
+
+/// From the slim checkpoint of the joint run alone, all of it goes on, and so does a child of one of its skills.
+fn what_was_kept_is_enough_to_go_on(workplace: &Workplace, folder: &Path) {
+    let kept = folder.join("kept_alone");
+    std::fs::create_dir(&kept).unwrap();
+    let path = workplace.checkpoint("locomotion");
+    Checkpoint::load(&path).unwrap().slim().save(&kept.join("locomotion.safetensors")).unwrap();
+    let alone = Workplace { kept, runs: folder.join("runs_alone"), ..workplace.clone() };
+    for skill in ["locomotion", "get_up"] {
+        let mut run = alone.prepare(small(alone.recipe(skill).unwrap()), 3, true).unwrap();
+        run.advance().unwrap();
+        assert_eq!(run.training.samples > 288, skill == "locomotion", "{skill}");
+    }
+    let missing = alone.prepare(small(alone.recipe("jog").unwrap()), 3, true);
+    assert!(missing.is_ok(), "its parent was trained together with others");
 }
 
 fn the_pack_acts_as_the_trainer(pack: &CharacterPack, ingredients: &[Ingredient]) {

@@ -32,6 +32,8 @@ pub struct PpoConfig {
     pub gradient_norm: f32,
     /// Weight of the squared excess of |mean action| over 1.
     pub bound_penalty: f32,
+    /// Share that a policy's running mean keeps at every update.
+    pub average: f32,
     /// Weight of the squared distance to the parent's parameters.
     pub regularisation: f32,
     /// Hidden sizes of the critic.
@@ -54,6 +56,7 @@ impl Default for PpoConfig {
             critic_rate: 5e-4,
             gradient_norm: 1.0,
             bound_penalty: 10.0,
+            average: 0.99,
             regularisation: 0.0,
             critic_hidden: vec![256, 128],
         }

@@ -53,6 +53,8 @@ impl BatchEvaluator {
 pub struct Actor {
     /// The policy.
     pub network: Network,
+    /// Its running mean over the updates: what is kept when training is over, for it does not shake with every one.
+    pub average: Network,
     /// Its optimiser.
     pub adam: Adam,
     /// Index of the actor it is pulled towards, if any.
@@ -67,13 +69,14 @@ impl Actor {
     /// A policy that learns, pulled towards its parent if it has one.
     #[must_use]
     pub fn learning(network: Network, parent: Option<usize>) -> Self {
-        Self { adam: Adam::new(network.parameters.len()), network, parent, frozen: false, rate: 0.0 }
+        let adam = Adam::new(network.parameters.len());
+        Self { adam, average: network.clone(), network, parent, frozen: false, rate: 0.0 }
     }
 
     /// A policy that stays as it is.
     #[must_use]
     pub fn frozen(network: Network) -> Self {
-        Self { adam: Adam::new(network.parameters.len()), network, parent: None, frozen: true, rate: 0.0 }
+        Self { frozen: true, ..Self::learning(network, None) }
     }
 }
 
@@ -144,6 +147,15 @@ impl Learner {
             edges,
             critic,
             rng,
+        }
+    }
+
+    /// Moves the running means on by an update.
+    pub(super) fn average(&mut self) {
+        let keep = self.config.average;
+        for actor in self.actors.iter_mut().filter(|a| !a.frozen) {
+            let pairs = actor.average.parameters.iter_mut().zip(&actor.network.parameters);
+            pairs.for_each(|(mean, now)| *mean = keep * *mean + (1.0 - keep) * now);
         }
     }
 

@@ -54,6 +54,7 @@ impl Learner {
             self.order = order;
         }
         self.steer_rates();
+        self.average();
         for value in [&mut total.kl, &mut total.value_error, &mut total.clipped, &mut total.gradient_norm] {
             *value /= steps;
         }

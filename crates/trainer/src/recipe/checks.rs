@@ -105,6 +105,7 @@ impl Recipe {
                 format!("{:?} and {}", env.edge_sweep_secs, env.edge_secs),
             ),
             ((0.0..1.0).contains(&ppo.gamma), "ppo.gamma", "a discount in [0, 1)", ppo.gamma.to_string()),
+            ((0.0..1.0).contains(&ppo.average), "ppo.average", "a share in [0, 1)", ppo.average.to_string()),
             (unit(ppo.gae_lambda), "ppo.gae_lambda", "a discount in [0, 1]", ppo.gae_lambda.to_string()),
             (positive(ppo.deviation), "ppo.deviation", "a positive deviation", ppo.deviation.to_string()),
             (
