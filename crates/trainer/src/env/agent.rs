@@ -36,6 +36,8 @@ pub struct Agent {
     history: FrameHistory,
     rng: Rng,
     age: u32,
+    /// Age at which the episode began.
+    born_at: u32,
     place: (f64, f64),
 }
 
@@ -53,11 +55,12 @@ impl Agent {
             history: FrameHistory::default(),
             rng,
             age: 0,
+            born_at: 0,
             place: (0.0, 0.0),
         }
     }
 
-    /// Starts an episode; the first one at a random age, so that a population does not end as one.
+    /// Starts an episode; the first one anywhere in its time, later ones up to a quarter of it short.
     pub fn reset(&mut self, stage: &Stage<'_>, first: bool) {
         let config = stage.config;
         self.choose_place();
@@ -76,7 +79,10 @@ impl Agent {
         }
         let at = (self.position(), self.heading().angle());
         self.command.aim(config, stage.course, at, &mut self.rng);
-        self.age = if first { self.rng.index(config.episode_ticks as usize) as u32 } else { 0 };
+        // Random ages at the start, or a population without falls would end its episodes as one.
+        let ticks = config.episode_ticks as usize;
+        self.born_at = self.rng.index(if first { ticks } else { ticks.div_ceil(4) }) as u32;
+        self.age = self.born_at;
     }
 
     /// A start state out of other clips, those of any node, those around the place on the course, or the last node's.
@@ -240,7 +246,7 @@ impl Agent {
     /// Length of the episode so far and whether it failed.
     #[must_use]
     pub fn episode(&self, done: Done) -> Episode {
-        Episode { ticks: self.age, failed: done == Done::Failed }
+        Episode { ticks: self.age - self.born_at, failed: done == Done::Failed }
     }
 
     /// Now and then a push of 0.2 s on the pelvis, in a random horizontal direction.
