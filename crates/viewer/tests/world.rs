@@ -7,10 +7,10 @@ use std::sync::Arc;
 use common::simulation;
 use image::{Rgba, RgbaImage};
 use physics_bridge::Settings;
-use policy_core::{BlendMode, CharacterPack, GamepadState, Heading};
+use policy_core::{BlendMode, Body, CharacterPack, GamepadState, Heading};
 use viewer::assets;
 use viewer::recorder::{Kind, Recorder};
-use viewer::sim::{LIE_SECS, SimConfig, SimError, Simulation, TICK_SECS};
+use viewer::sim::{LIE_SECS, SHOVE_BUTTON, SimConfig, SimError, Simulation, TICK_SECS};
 
 const FORWARD: GamepadState = GamepadState {
     left_stick: [0.0, 1.0],
@@ -70,6 +70,27 @@ fn who_falls_without_a_skill_to_rise_is_counted_and_stood_up() {
         assert!(sim.totals().stood_up >= 1, "{:?}", sim.totals());
     }
     assert!(sim.totals().down_ticks > 30);
+}
+
+#[test]
+fn a_shove_comes_once_however_long_its_button_is_held() {
+    let mut held = FORWARD;
+    held.buttons.set(SHOVE_BUTTON, true);
+    let mut sim = simulation();
+    run(&mut sim, 30);
+    let speed = |sim: &Simulation| sim.player().state.body(Body::Torso).linear_velocity.x;
+    let before = speed(&sim);
+    for _ in 0..7 {
+        sim.tick(&held, Heading::FORWARD);
+    }
+    assert!(speed(&sim) > before + 2.0, "{} after {before}", speed(&sim));
+    // A second push of the same size would take it further still.
+    let mut fallen = false;
+    for _ in 0..60 {
+        sim.tick(&held, Heading::FORWARD);
+        fallen |= sim.player().state.body(Body::Pelvis).position.z < 0.4;
+    }
+    assert!(fallen && speed(&sim).abs() < 2.5, "{fallen}, {}", speed(&sim));
 }
 
 #[test]
