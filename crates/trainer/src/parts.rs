@@ -8,7 +8,6 @@ use policy_core::{DOF_COUNT, POLICY_INPUT_LEN};
 use crate::Rng;
 use crate::amp::DiscriminatorLearner;
 use crate::checkpoint::Checkpoint;
-use crate::clip::ClipError;
 use crate::env::{Course, CourseNode, Demonstrations};
 use crate::nn::Network;
 use crate::pack::Ingredient;
@@ -145,12 +144,8 @@ impl Workplace {
     /// Clips that a recipe names for starts.
     fn start_clips(&self, recipe: &Recipe) -> Result<Option<Demonstrations>> {
         let names = &recipe.environment.start.clips;
-        if names.is_empty() {
-            return Ok(None);
-        }
-        let clips = names.iter().map(|n| Ok((self.clips.load(n)?, 1.0)));
-        let clips = clips.collect::<Result<Vec<_>, ClipError>>()?;
-        Ok(Some(Demonstrations::from_clips(&clips, &self.model, &self.normalisers.frame)?))
+        let named = names.iter().map(|name| (name.as_str(), 1.0));
+        (!names.is_empty()).then(|| self.clips_ready(named)).transpose()
     }
 }
 

@@ -7,7 +7,7 @@ use anyhow::{Context, Result, bail};
 use physics_bridge::Model;
 
 use crate::checkpoint::{Checkpoint, write_atomically};
-use crate::clip::ClipFolder;
+use crate::clip::{ClipError, ClipFolder};
 use crate::env::{Demonstrations, Normalisers};
 use crate::recipe::Recipe;
 use crate::run::{METRICS, Run};
@@ -95,10 +95,16 @@ impl Workplace {
     /// # Errors
     /// When a clip is missing or wrong.
     pub fn demonstrations(&self, recipe: &Recipe) -> Result<Demonstrations> {
-        let mut clips = Vec::new();
-        for clip in &recipe.clips {
-            clips.push((self.clips.load(&clip.name)?, clip.share));
-        }
+        self.clips_ready(recipe.clips.iter().map(|clip| (clip.name.as_str(), clip.share)))
+    }
+
+    /// Clips by name and share, ready to learn from.
+    pub(crate) fn clips_ready<'a>(
+        &self,
+        named: impl Iterator<Item = (&'a str, f32)>,
+    ) -> Result<Demonstrations> {
+        let clips = named.map(|(name, share)| Ok((self.clips.load(name)?, share)));
+        let clips = clips.collect::<Result<Vec<_>, ClipError>>()?;
         Ok(Demonstrations::from_clips(&clips, &self.model, &self.normalisers.frame)?)
     }
 

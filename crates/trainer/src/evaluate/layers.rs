@@ -1,10 +1,11 @@
 //! Interpolation of single layers (paper, section 4.3): does the motion change, and does the character stay up?
 
+use std::collections::BTreeMap;
+use std::ops::Range;
 use std::sync::Arc;
 
-use glam::Vec2;
 use physics_bridge::Model;
-use policy_core::{Blend, CharacterPack, CharacterState, Command, Goal, MAX_LAYERS, TARGET_RANGE_METRES};
+use policy_core::{Blend, CharacterPack, CharacterState, Command, MAX_LAYERS};
 use rayon::prelude::*;
 use serde::Serialize;
 
@@ -31,7 +32,7 @@ pub struct LayerReport {
 }
 
 /// Every choice of layers but none and all, as a bit for each layer, with its name: `1`, `2`, `1+2`, ...
-pub fn choices() -> impl Iterator<Item = (usize, String)> {
+fn choices() -> impl Iterator<Item = (usize, String)> {
     (1..(1 << LAYERS) - 1).map(|bits| {
         let chosen: Vec<String> =
             (0..LAYERS).filter(|layer| bits >> layer & 1 == 1).map(|layer| (layer + 1).to_string()).collect();
@@ -39,56 +40,61 @@ pub fn choices() -> impl Iterator<Item = (usize, String)> {
     })
 }
 
-/// Blends the layers in `bits` half-way from node `from` to node `to`, for `characters` that go straight ahead.
+/// Blends each choice of layers half-way from node `from` to node `to`, for `characters` that go straight ahead.
 #[must_use]
 pub fn measure_layers(
     model: &Model,
     pack: &Arc<CharacterPack>,
     (from, to): (usize, usize),
-    bits: usize,
     characters: usize,
-) -> LayerReport {
-    let mut t = [0.0; MAX_LAYERS];
-    (0..LAYERS).filter(|layer| bits >> layer & 1 == 1).for_each(|layer| t[layer] = 0.5);
-    let blend = Blend::between_per_layer(from, to, t);
-    let walked: Vec<_> = (0..characters)
-        .into_par_iter()
-        .map(|i| {
-            let alone = walk(model, pack, from, None, i as u64);
-            let other = walk(model, pack, from, None, (i + characters) as u64);
-            (walk(model, pack, from, Some(blend), i as u64), alone, other)
-        })
-        .collect();
-    let mean = |pairs: Vec<f32>| pairs.iter().sum::<f32>() / pairs.len().max(1) as f32;
-    let both = |pick: &dyn Fn(usize) -> Option<f32>| mean((0..walked.len()).filter_map(pick).collect());
-    LayerReport {
-        without_fall: walked.iter().filter(|(w, ..)| w.is_some()).count() as f32 / characters.max(1) as f32,
-        change_m: both(&|i| Some(pose_error(walked[i].0.as_deref()?, walked[i].1.as_deref()?))),
-        noise_m: both(&|i| Some(pose_error(walked[i].2.as_deref()?, walked[i].1.as_deref()?))),
-    }
+) -> BTreeMap<String, LayerReport> {
+    // The first policy alone, twice: what the motion is compared to, and how much that differs by itself.
+    let alone = walk_all(model, pack, from, None, 0..characters);
+    let other = walk_all(model, pack, from, None, characters..2 * characters);
+    let noise_m = difference(&other, &alone);
+    let measured = choices().map(|(bits, name)| {
+        let mut t = [0.0; MAX_LAYERS];
+        (0..LAYERS).filter(|layer| bits >> layer & 1 == 1).for_each(|layer| t[layer] = 0.5);
+        let blend = Blend::between_per_layer(from, to, t);
+        let blended = walk_all(model, pack, from, Some(blend), 0..characters);
+        let up = blended.iter().flatten().count();
+        let without_fall = up as f32 / characters.max(1) as f32;
+        (name, LayerReport { without_fall, change_m: difference(&blended, &alone), noise_m })
+    });
+    measured.collect()
 }
 
-/// States of a character that goes straight ahead; `None` when it falls after it has settled.
-fn walk(
+/// States of a walk; `None` when it ended in a fall.
+type Walk = Option<Vec<CharacterState>>;
+
+fn walk_all(
     model: &Model,
     pack: &Arc<CharacterPack>,
     node: usize,
     blend: Option<Blend>,
-    seed: u64,
-) -> Option<Vec<CharacterState>> {
+    seeds: Range<usize>,
+) -> Vec<Walk> {
+    seeds.into_par_iter().map(|seed| walk(model, pack, node, blend, seed as u64)).collect()
+}
+
+/// Mean pose error between the walks of two lists that both ended on their feet.
+fn difference(walks: &[Walk], others: &[Walk]) -> f32 {
+    let errors: Vec<f32> = walks
+        .iter()
+        .zip(others)
+        .filter_map(|(a, b)| Some(pose_error(a.as_deref()?, b.as_deref()?)))
+        .collect();
+    errors.iter().sum::<f32>() / errors.len().max(1) as f32
+}
+
+/// States of a character that goes straight ahead; `None` when it falls after it has settled.
+fn walk(model: &Model, pack: &Arc<CharacterPack>, node: usize, blend: Option<Blend>, seed: u64) -> Walk {
     let graph = pack.graph();
     let mut subject = Subject::new(model, pack, &graph.nodes()[node].name);
-    let stands = graph.nodes()[node].speed_mps == Some(0.0);
     let settle = ((SETTLE_SECS + Rng::new(seed, 19).range(0.0, 1.0)) / DT_SECS) as u32;
     let mut states = Vec::new();
     for tick in 0..settle + (TEST_SECS / DT_SECS) as u32 {
-        let ahead = subject.position() + Vec2::new(TARGET_RANGE_METRES, 0.0);
-        let command = Command {
-            target: (!stands).then_some(ahead),
-            goal: Goal::Node(node),
-            blend: blend.filter(|_| tick >= settle),
-            ..Command::default()
-        };
+        let command = Command { blend: blend.filter(|_| tick >= settle), ..subject.ahead(node) };
         if !subject.tick(&command) || subject.controller.report().fallen {
             return None;
         }

@@ -2,9 +2,9 @@
 
 use std::sync::Arc;
 
-use glam::{Vec2, Vec3};
+use glam::Vec3;
 use physics_bridge::Model;
-use policy_core::{Body, CharacterPack, CharacterState, Command, Goal, Heading, TARGET_RANGE_METRES};
+use policy_core::{Body, CharacterPack, CharacterState, Heading};
 use serde::Serialize;
 
 use super::subject::{SETTLE_SECS, Subject};
@@ -69,12 +69,9 @@ impl MotionReport {
 pub fn watch(model: &Model, pack: &Arc<CharacterPack>, node: usize) -> Vec<CharacterState> {
     let graph = pack.graph();
     let mut subject = Subject::new(model, pack, &graph.nodes()[node].name);
-    let stands = graph.nodes()[node].speed_mps == Some(0.0);
     let mut states = Vec::new();
     for tick in 0..((SETTLE_SECS + WATCHED_SECS) / DT_SECS) as u32 {
-        let ahead = subject.position() + Vec2::new(TARGET_RANGE_METRES, 0.0);
-        let command =
-            Command { target: (!stands).then_some(ahead), goal: Goal::Node(node), ..Command::default() };
+        let command = subject.ahead(node);
         if !subject.tick(&command) || subject.controller.report().fallen {
             return Vec::new();
         }

@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use glam::Vec3;
 use physics_bridge::Model;
-use policy_core::{Body, CharacterPack, Command, Goal, TARGET_RANGE_METRES};
+use policy_core::{Body, CharacterPack};
 use rayon::prelude::*;
 
 use super::subject::{SETTLE_SECS, Subject};
@@ -45,16 +45,13 @@ pub fn measure_push(
 fn stays_up(model: &Model, pack: &Arc<CharacterPack>, node: usize, force: Vec3, seed: u64) -> bool {
     let graph = pack.graph();
     let mut subject = Subject::new(model, pack, &graph.nodes()[node].name);
-    let stands = graph.nodes()[node].speed_mps == Some(0.0);
     let mut rng = Rng::new(seed, 9);
     let before = ((SETTLE_SECS + rng.range(0.0, 1.0)) / DT_SECS) as u32;
     for tick in 0..before + (3.0 / DT_SECS) as u32 {
         if tick == before {
             subject.character.push(Body::Pelvis, force, PUSH_SECS).expect("forces tried are within bounds");
         }
-        let ahead = subject.position() + glam::Vec2::new(TARGET_RANGE_METRES, 0.0);
-        let target = (!stands).then_some(ahead);
-        let command = Command { target, goal: Goal::Node(node), ..Command::default() };
+        let command = subject.ahead(node);
         if !subject.tick(&command) || subject.controller.report().fallen {
             return false;
         }

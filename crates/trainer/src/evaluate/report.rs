@@ -9,9 +9,8 @@ use policy_core::{BlendMode, CharacterPack, CharacterState};
 use serde::Serialize;
 
 use super::{
-    Effort, LayerReport, MotionReport, RateReport, UprightReport, choices, measure_coordinates,
-    measure_get_up, measure_layers, measure_push, measure_roll, measure_sweep, measure_upright, pose_error,
-    watch,
+    Effort, LayerReport, MotionReport, RateReport, UprightReport, measure_coordinates, measure_get_up,
+    measure_layers, measure_push, measure_roll, measure_sweep, measure_upright, pose_error, watch,
 };
 
 /// All measures of a pack.
@@ -146,10 +145,9 @@ pub fn evaluate(
     note("single layers");
     for [a, b] in graph.edges().iter().map(|e| e.nodes) {
         for (from, to) in [(a, b), (b, a)] {
-            let measured = choices()
-                .map(|(bits, name)| (name, measure_layers(model, pack, (from, to), bits, effort.layered)));
+            let measured = measure_layers(model, pack, (from, to), effort.layered);
             let name = format!("{}-{}", graph.nodes()[from].name, graph.nodes()[to].name);
-            evaluation.layers.insert(name, measured.collect());
+            evaluation.layers.insert(name, measured);
         }
     }
     let cases: Vec<f32> =

@@ -63,6 +63,14 @@ impl Subject {
         sound
     }
 
+    /// The command to go straight ahead along x as `node`; to stay, for a node that stands.
+    #[must_use]
+    pub fn ahead(&self, node: usize) -> Command {
+        let stands = self.controller.pack().graph().nodes()[node].speed_mps == Some(0.0);
+        let target = self.position() + Vec2::new(TARGET_RANGE_METRES, 0.0);
+        Command { target: (!stands).then_some(target), goal: Goal::Node(node), ..Command::default() }
+    }
+
     /// Horizontal place of the pelvis.
     #[must_use]
     pub fn position(&self) -> Vec2 {
