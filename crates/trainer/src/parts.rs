@@ -115,7 +115,9 @@ impl Workplace {
         for (i, name) in names.iter().enumerate() {
             let skill = self.skill(name, &recipe.skill)?;
             let task = skill.recipe.phases.last().map_or(1.0, |phase| phase.task);
-            nodes.push(CourseNode { task, ..CourseNode::new(name, &skill.recipe.environment, 1.0) });
+            let pelvis_metres = skill.demonstrations.pelvis_metres();
+            let node = CourseNode::new(name, &skill.recipe.environment, 1.0);
+            nodes.push(CourseNode { task, pelvis_metres, ..node });
             actors.push(Actor::learning(skill.actor, skill.recipe.parent.as_ref().and_then(index)));
             let known = Some(skill.discriminator);
             let learner = DiscriminatorLearner::new(recipe.discriminator.clone(), known, seed, 10 + i as u64);
@@ -144,7 +146,7 @@ impl Workplace {
     /// Clips that a recipe names for starts.
     fn start_clips(&self, recipe: &Recipe) -> Result<Option<Demonstrations>> {
         let names = &recipe.environment.start.clips;
-        let named = names.iter().map(|name| (name.as_str(), 1.0));
+        let named = names.iter().map(|name| (name.as_str(), 1.0, true));
         (!names.is_empty()).then(|| self.clips_ready(named)).transpose()
     }
 }

@@ -51,6 +51,13 @@ pub struct ClipShare {
     /// Its share among the clips of the recipe.
     #[serde(default = "one")]
     pub share: f32,
+    /// False to take the clip as it is, without its mirror image.
+    #[serde(default = "yes")]
+    pub mirror: bool,
+}
+
+fn yes() -> bool {
+    true
 }
 
 fn one() -> f32 {
@@ -80,6 +87,17 @@ pub struct Phase {
     /// without a fall rule near its clips.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub episode_ticks: Option<u32>,
+    /// Weight of imitation in this phase, where it is another than `environment.imitation`; the style's is what task and
+    /// imitation leave.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub imitation: Option<f32>,
+    /// Weight of the squared distance between the mean action and what motors would need to follow the imitated clip: a
+    /// start for the policy that exploration alone is slow to find. The divergence of updates is not steered meanwhile.
+    #[serde(default)]
+    pub guide: f32,
+    /// Share of episodes that start in other clips in this phase, where it is another than `environment.start.other`.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub other: Option<f32>,
 }
 
 /// Why a recipe can't be used.
@@ -146,6 +164,17 @@ impl Recipe {
     #[must_use]
     pub fn total_samples(&self) -> u64 {
         self.phases.iter().map(|p| p.samples).sum()
+    }
+
+    /// The environment as the phase that is on after `samples` samples has it.
+    #[must_use]
+    pub fn environment_at(&self, samples: u64) -> EnvironmentConfig {
+        let (phase, mut now) = (self.phase_at(samples).1, self.environment.clone());
+        now.episode_ticks = phase.episode_ticks.unwrap_or(now.episode_ticks);
+        now.imitation = phase.imitation.unwrap_or(now.imitation);
+        now.start.ragdoll = phase.ragdoll.unwrap_or(now.start.ragdoll);
+        now.start.other = phase.other.unwrap_or(now.start.other);
+        now
     }
 
     /// The phase that is on after `samples` samples; the last one at the end.

@@ -15,7 +15,7 @@ use crate::training::{IterationReport, Training};
 
 /// Columns of `metrics.csv`.
 pub const METRICS: &str = "samples,secs,rate,style,task,reward,speed_error,episode_ticks,failed,kl,actor_rate,\
-                           value_error,clipped,discriminator_accuracy,cross_entropy,squared_gradient,distance";
+                           value_error,clipped,discriminator_accuracy,cross_entropy,squared_gradient,distance,imitation";
 
 /// Iterations between checkpoints.
 const CHECKPOINT_EVERY: u64 = 25;
@@ -108,6 +108,7 @@ fn metrics_line(samples: u64, secs: f64, rate: f64, report: &IterationReport) ->
         f64::from(d.cross_entropy),
         f64::from(d.squared_gradient),
         report.distance,
+        p.imitation / ticks,
     ] {
         let _ = write!(line, ",{value:.6}");
     }

@@ -21,6 +21,9 @@ pub struct Row {
     pub caption: String,
     /// One figure for each state.
     pub states: Vec<CharacterState>,
+    /// True to see all figures from the first one's right, false to see each from its own: a character that goes over its
+    /// head has no heading half-way.
+    pub fixed: bool,
 }
 
 /// Draws rows of figures. Each figure stands where its pelvis is; the right side is drawn darker than the left.
@@ -43,7 +46,9 @@ pub fn draw(rows: &[Row]) -> String {
             escaped(&row.caption),
         );
         for (column, state) in row.states.iter().enumerate() {
-            figure(&mut svg, state, 20.0 + (column as f32 + 0.5) * PITCH, floor);
+            let seen = if row.fixed { &row.states[0] } else { state };
+            let heading = Heading::from_rotation(seen.body(Body::Pelvis).rotation);
+            figure(&mut svg, (state, heading), 20.0 + (column as f32 + 0.5) * PITCH, floor);
         }
     }
     svg.push_str("</svg>\n");
@@ -59,9 +64,8 @@ const CHAINS: [(&[Body], &str); 5] = [
     (&[Body::Torso, Body::RightUpperArm, Body::RightLowerArm, Body::RightHand], "#3060a0"),
 ];
 
-fn figure(svg: &mut String, state: &CharacterState, x: f32, floor: f32) {
+fn figure(svg: &mut String, (state, heading): (&CharacterState, Heading), x: f32, floor: f32) {
     let pelvis = state.body(Body::Pelvis);
-    let heading = Heading::from_rotation(pelvis.rotation);
     let place = |point: Vec3| {
         let local = heading.heading_from_world(point - pelvis.position);
         (x + SCALE * local.x, floor - SCALE * (point.z - state.ground_height))
@@ -97,8 +101,8 @@ mod tests {
 
     #[test]
     fn every_state_is_a_figure() {
-        let row = Row { caption: "a < b".into(), states: vec![CharacterState::default(); 3] };
-        let svg = draw(&[row.clone(), row]);
+        let row = Row { caption: "a < b".into(), states: vec![CharacterState::default(); 3], fixed: false };
+        let svg = draw(&[row.clone(), Row { fixed: true, ..row }]);
         assert_eq!(svg.matches("<circle").count(), 6);
         assert!(svg.contains("a &lt; b") && svg.ends_with("</svg>\n"));
     }

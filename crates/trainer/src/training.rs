@@ -88,8 +88,9 @@ impl Training {
         let (low, high) = model.joint_limits();
         let scaling = ActionScaling::from_joint_limits(low, high).expect("a loaded model has finite limits");
         let demonstrations = judges.demonstrations();
+        let environment = recipe.environment_at(0);
         let stage = Stage {
-            config: &recipe.environment,
+            config: &environment,
             course: &course,
             demonstrations: &demonstrations,
             start_demonstrations: start_demonstrations.as_ref(),
@@ -100,7 +101,7 @@ impl Training {
             rollout: Rollout::new(shape, (POLICY_INPUT_LEN, stage.critic_inputs()), DOF_COUNT),
             judged: vec![0.0; shape.0 * shape.1 * DISCRIMINATOR_INPUT_LEN],
             samples: 0,
-            environment: recipe.environment.clone(),
+            environment,
             recipe,
             learner,
             judges,
@@ -176,8 +177,8 @@ impl Training {
         self.choose_ground()?;
         let phase = self.recipe.phase_at(self.samples).1;
         self.learner.config.deviation = phase.deviation.unwrap_or(self.recipe.ppo.deviation);
-        self.environment.episode_ticks = phase.episode_ticks.unwrap_or(self.recipe.environment.episode_ticks);
-        self.environment.start.ragdoll = phase.ragdoll.unwrap_or(self.recipe.environment.start.ragdoll);
+        self.learner.config.guide = phase.guide;
+        self.environment = self.recipe.environment_at(self.samples);
         let start = std::time::Instant::now();
         self.roll_out();
         let rolled = start.elapsed();
@@ -215,12 +216,19 @@ impl Training {
         };
         let width = stage.critic_inputs();
         self.rollout.clear();
+        let task_share = self.recipe.phase_at(self.samples).1.task;
         for step in 0..self.rollout.steps {
             let rows = step * n..(step + 1) * n;
             self.rollout.critic_inputs[rows.start * width..rows.end * width]
                 .copy_from_slice(&self.population.inputs);
             let seen = self.population.inputs.chunks_exact(width).zip(self.population.agents());
+            let guided = self.learner.config.guide > 0.0;
+            self.rollout.guides.resize(if guided { self.rollout.actions.len() } else { 0 }, f32::NAN);
             for (row, (input, agent)) in rows.clone().zip(seen) {
+                if guided {
+                    let out = &mut self.rollout.guides[row * DOF_COUNT..(row + 1) * DOF_COUNT];
+                    agent.guide_into(&stage, &self.scaling, out);
+                }
                 let at = row * POLICY_INPUT_LEN;
                 self.rollout.inputs[at..at + POLICY_INPUT_LEN].copy_from_slice(&input[..POLICY_INPUT_LEN]);
                 self.rollout.edge[row] = agent.command.place.edge;
@@ -232,14 +240,17 @@ impl Training {
                 &mut self.judged[rows.start * DISCRIMINATOR_INPUT_LEN..rows.end * DISCRIMINATOR_INPUT_LEN];
             self.population.step(&stage, actions, judged);
             self.rollout.record(step, self.population.ends(), &self.population.inputs_after);
-            for (reward, terms) in self.rollout.rewards[rows].iter_mut().zip(self.population.terms()) {
-                *reward = terms.task;
+            let at = self.rollout.edge[rows.clone()].iter().zip(&self.rollout.blend[rows.clone()]);
+            let rewards = self.rollout.rewards[rows].iter_mut().zip(self.population.terms());
+            for ((reward, terms), (edge, t)) in rewards.zip(at) {
+                let share = task_share * self.course.task(Place { edge: *edge, t: *t });
+                *reward = share * terms.task + self.environment.imitation * terms.imitation;
             }
         }
         self.rollout.last_critic_inputs.copy_from_slice(&self.population.inputs);
     }
 
-    /// Mixes the style reward into the task reward that is there and teaches the judges; returns the mean style.
+    /// Adds the style reward, by the weight that the others leave, to the rewards that are there and teaches the judges; returns the mean style.
     fn judge(&mut self) -> (f32, DiscriminatorReport) {
         let task_share = self.recipe.phase_at(self.samples).1.task;
         let places = (&self.rollout.edge[..], &self.rollout.blend[..]);
@@ -247,7 +258,7 @@ impl Training {
         let at = places.0.iter().zip(places.1).map(|(edge, t)| Place { edge: *edge, t: *t });
         for ((reward, style), place) in self.rollout.rewards.iter_mut().zip(style).zip(at) {
             let share = task_share * self.course.task(place);
-            *reward = share * *reward + (1.0 - share) * style;
+            *reward += (1.0 - share - self.environment.imitation) * style;
         }
         let mean = style.iter().sum::<f32>() / style.len() as f32;
         (mean, self.judges.learn(&self.course, places, &self.judged))

@@ -95,15 +95,15 @@ impl Workplace {
     /// # Errors
     /// When a clip is missing or wrong.
     pub fn demonstrations(&self, recipe: &Recipe) -> Result<Demonstrations> {
-        self.clips_ready(recipe.clips.iter().map(|clip| (clip.name.as_str(), clip.share)))
+        self.clips_ready(recipe.clips.iter().map(|clip| (clip.name.as_str(), clip.share, clip.mirror)))
     }
 
-    /// Clips by name and share, ready to learn from.
+    /// Clips by name, share and whether their mirror images count too, ready to learn from.
     pub(crate) fn clips_ready<'a>(
         &self,
-        named: impl Iterator<Item = (&'a str, f32)>,
+        named: impl Iterator<Item = (&'a str, f32, bool)>,
     ) -> Result<Demonstrations> {
-        let clips = named.map(|(name, share)| Ok((self.clips.load(name)?, share)));
+        let clips = named.map(|(name, share, mirror)| Ok((self.clips.load(name)?, share, mirror)));
         let clips = clips.collect::<Result<Vec<_>, ClipError>>()?;
         Ok(Demonstrations::from_clips(&clips, &self.model, &self.normalisers.frame)?)
     }

@@ -134,6 +134,33 @@ fn what_was_kept_is_enough_to_go_on(workplace: &Workplace, folder: &Path) {
     assert!(missing.is_ok(), "its parent was trained together with others");
 }
 
+#[test]
+fn a_character_that_starts_in_its_clip_is_like_it_until_it_loses_it() {
+    let folder = tempfile::tempdir().unwrap();
+    write_clip(folder.path(), "walk");
+    write_clip(folder.path(), "idle");
+    let model = Model::load(project().join("assets/humanoid.xml")).unwrap();
+    let text = "skill = \"walk\"\nclips = [{ name = \"walk\" }]\n[[phases]]\nsamples = 100000\ntask = 0.0\nimitation = 1.0\n";
+    let recipe = small(Recipe::parse(Path::new("x.toml"), text).unwrap());
+    let clips = ClipFolder::from_argument(Some(folder.path().to_owned())).unwrap();
+    let normalisers = Normalisers::from_clips(&[clips.load("walk").unwrap()], &model).unwrap();
+    let workplace = Workplace {
+        recipes: project().join("assets/recipes"),
+        runs: folder.path().join("runs"),
+        kept: folder.path().join("kept"),
+        clips,
+        model,
+        normalisers,
+    };
+    let mut run = workplace.prepare(recipe, 1, false).unwrap();
+    let mut best = 0.0_f64;
+    for _ in 0..100 {
+        let population = run.advance().unwrap().population;
+        best = best.max(population.imitation / population.ticks as f64);
+    }
+    assert!((0.5..1.0).contains(&best), "{best}");
+}
+
 fn the_pack_acts_as_the_trainer(pack: &CharacterPack, ingredients: &[Ingredient]) {
     let input: Vec<f32> = (0..POLICY_INPUT_LEN).map(|i| (i as f32 * 0.7).sin()).collect();
     for (node, policy) in pack.graph().nodes().iter().zip(pack.policies()) {
@@ -155,6 +182,11 @@ fn unknown_fields_and_senseless_values_are_named() {
     assert!(parse(&format!("{good}[ppo]\ngama = 0.9\n")).contains("gama"));
     assert!(parse(&format!("{good}[ppo]\ngamma = 1.0\n")).contains("ppo.gamma"));
     assert!(parse(&good.replace("0.5", "1.5")).contains("phases.task"));
+    assert!(parse(&good.replace("0.5", "0.5\nimitation = 0.6")).contains("imitation"));
+    assert!(parse(&good.replace("0.5", "0.5\nguide = -1.0")).contains("phases.guide"));
+    let together = good.replace("clips = [{ name = \"walk\" }]", "paths = [[\"a\", \"b\"]]");
+    assert!(Recipe::parse(Path::new("x.toml"), &together).is_ok());
+    assert!(parse(&together.replace("0.5", "0.5\nimitation = 0.1")).contains("paths"));
     assert!(parse(&good.replace("\"a\"", "\"../a\"")).contains("skill"));
     assert!(parse(&good.replace("skill = \"a\"", "skill = \"a\"\nedge = true")).contains("edge"));
     assert!(parse("").contains("skill"));

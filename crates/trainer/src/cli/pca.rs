@@ -1,13 +1,14 @@
-//! `trainer pca`: the data of the paper's figures 5 (visited states) and 6 (parameters) as CSV, and the correlation
+//! `trainer pca`: the paper's figures 5 (visited states) and 6 (parameters), as pictures and as CSV, and the correlation
 //! between distances of parameters and of states.
 
 use std::fmt::Write as _;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use anyhow::{Context, Result};
 use clap::Args;
 use physics_bridge::Model;
+use plotters::prelude::*;
 use policy_core::{CharacterPack, Command, Goal, Mlp, OBSERVATION_LEN, TARGET_RANGE_METRES};
 use rayon::prelude::*;
 use trainer::checkpoint::write_atomically;
@@ -19,7 +20,7 @@ use trainer::pca::{Components, correlation};
 pub(crate) struct Arguments {
     /// The pack.
     pack: PathBuf,
-    /// Folder for `states.csv` and `parameters.csv`.
+    /// Folder for `states` and `parameters`, each as .csv and .svg.
     #[arg(long, default_value = "out/pca")]
     out: PathBuf,
     /// Seconds that each policy is watched.
@@ -57,6 +58,16 @@ pub(crate) fn run(model: &Model, arguments: &Arguments) -> Result<()> {
     }
     write_atomically(&arguments.out.join("parameters.csv"), csv.as_bytes())?;
 
+    let names: Vec<&str> = nodes.iter().map(|n| n.name.as_str()).collect();
+    let points = |c: &Components, rows: &[Vec<f32>]| -> Vec<[f64; 2]> {
+        rows.iter().map(|row| c.project(row)).map(|p| [f64::from(p[0]), f64::from(p[1])]).collect()
+    };
+    let by_policy: Vec<_> = visited.iter().map(|rows| points(&states, rows)).collect();
+    scatter(&arguments.out.join("states.svg"), "visited states", &names, &by_policy, &[])?;
+    let by_policy: Vec<_> = flat.iter().map(|row| points(&components, std::slice::from_ref(row))).collect();
+    let edges: Vec<_> = pack.graph().edges().iter().map(|e| e.nodes).collect();
+    scatter(&arguments.out.join("parameters.svg"), "parameters", &names, &by_policy, &edges)?;
+
     let (mut of_parameters, mut of_states) = (Vec::new(), Vec::new());
     for a in 0..nodes.len() {
         for b in a + 1..nodes.len() {
@@ -69,6 +80,46 @@ pub(crate) fn run(model: &Model, arguments: &Arguments) -> Result<()> {
     println!("parameters: two components hold {:.0} % of the variance", share(&components));
     println!("correlation of distances: {:.2}", correlation(&of_parameters, &of_states));
     println!("wrote {}", arguments.out.display());
+    Ok(())
+}
+
+/// Draws the points of each policy in its own colour, and lines between policies.
+fn scatter(
+    path: &Path,
+    title: &str,
+    names: &[&str],
+    points: &[Vec<[f64; 2]>],
+    edges: &[[usize; 2]],
+) -> Result<()> {
+    let range = |axis: usize| {
+        let all = points.iter().flatten().map(|p| p[axis]);
+        let (low, high) = all.fold((f64::MAX, f64::MIN), |(low, high), x| (low.min(x), high.max(x)));
+        let margin = 0.05 * (high - low).max(1e-3);
+        low - margin..high + margin
+    };
+    let root = SVGBackend::new(path, (800, 600)).into_drawing_area();
+    root.fill(&WHITE)?;
+    let mut chart = ChartBuilder::on(&root)
+        .caption(title, ("sans-serif", 20))
+        .margin(10)
+        .x_label_area_size(30)
+        .y_label_area_size(45)
+        .build_cartesian_2d(range(0), range(1))?;
+    chart.configure_mesh().x_desc("first component").y_desc("second component").draw()?;
+    let size = if edges.is_empty() { 2 } else { 6 };
+    for edge in edges {
+        let ends = edge.iter().filter_map(|node| points[*node].first()).map(|p| (p[0], p[1]));
+        chart.draw_series(LineSeries::new(ends, BLACK.mix(0.4)))?;
+    }
+    for (i, (name, points)) in names.iter().zip(points).enumerate() {
+        let colour = Palette99::pick(i).to_rgba();
+        chart
+            .draw_series(points.iter().map(|p| Circle::new((p[0], p[1]), size, colour.filled())))?
+            .label(*name)
+            .legend(move |(x, y)| Circle::new((x + 8, y), 5, colour.filled()));
+    }
+    chart.configure_series_labels().background_style(WHITE.mix(0.8)).border_style(BLACK.mix(0.3)).draw()?;
+    root.present()?;
     Ok(())
 }
 

@@ -6,11 +6,11 @@ use std::sync::Arc;
 use anyhow::{Context, Result};
 use clap::Args;
 use physics_bridge::Model;
-use policy_core::{CharacterPack, CharacterState};
+use policy_core::{Body, CharacterPack, CharacterState};
 use trainer::checkpoint::write_atomically;
 use trainer::clip::ClipFolder;
 use trainer::env::DT_SECS;
-use trainer::evaluate::{clip_states, pose_error, watch, watch_skill};
+use trainer::evaluate::{clip_states, pose_error, watch, watch_layers, watch_skill};
 use trainer::recipe::Recipe;
 use trainer::strip::{Row, draw};
 
@@ -51,8 +51,12 @@ pub(crate) fn run(model: &Model, recipes: &Path, clips: &ClipFolder, a: &Argumen
         let start = (0..=motion.len() - span).min_by(|x, y| at(*x).total_cmp(&at(*y))).unwrap_or(0);
         let figures = |states: &[CharacterState]| states.iter().step_by(a.stride.max(1)).copied().collect();
         let rows = [
-            Row { caption: format!("clip {name}"), states: figures(&clip) },
-            Row { caption: format!("policy {}", node.name), states: figures(&motion[start..start + span]) },
+            Row { caption: format!("clip {name}"), states: figures(&clip), fixed: false },
+            Row {
+                caption: format!("policy {}", node.name),
+                states: figures(&motion[start..start + span]),
+                fixed: false,
+            },
         ];
         write(&a.out, &node.name, &rows)?;
     }
@@ -78,17 +82,50 @@ pub(crate) fn run(model: &Model, recipes: &Path, clips: &ClipFolder, a: &Argumen
                 Row {
                     caption: format!("clip {}, {:.1} s", clip.name, secs(states)),
                     states: figures(states),
+                    fixed: true,
                 },
                 Row {
                     caption: format!("policy {}, {:.1} s", skill.name, secs(&motion)),
                     states: figures(&motion),
+                    fixed: true,
                 },
             ];
             write(&a.out, &name, &rows)?;
         }
     }
-    Ok(())
+    layers(model, &pack, a)
 }
+
+/// Single layers half-way from the second node of the first path to its third, and the policies at both ends.
+fn layers(model: &Model, pack: &Arc<CharacterPack>, a: &Arguments) -> Result<()> {
+    let [_, from, to, ..] = pack.graph().paths()[0].nodes[..] else { return Ok(()) };
+    let names = [from, to].map(|node| &pack.graph().nodes()[node].name);
+    let mut rows = Vec::new();
+    for (caption, t) in [
+        (format!("{} alone", names[0]), [0.0; 3]),
+        ("layer 1 half-way".into(), [0.5, 0.0, 0.0]),
+        ("layer 2 half-way".into(), [0.0, 0.5, 0.0]),
+        ("layer 3 half-way".into(), [0.0, 0.0, 0.5]),
+        ("all layers half-way".into(), [0.5; 3]),
+        (format!("{} alone", names[1]), [1.0; 3]),
+    ] {
+        let Some(states) = watch_layers(model, pack, (from, to), t) else {
+            println!("{caption}: falls before it can be drawn");
+            continue;
+        };
+        // From a moment at which the right foot comes down, after 4 s.
+        let height = |i: usize| states[i].body(Body::RightFoot).position.z;
+        let start = (120..states.len().saturating_sub(a.figures * a.stride))
+            .find(|i| height(i - 1) >= LANDING_METRES && height(*i) < LANDING_METRES)
+            .unwrap_or(120);
+        let states = states[start..].iter().step_by(a.stride.max(1)).take(a.figures).copied().collect();
+        rows.push(Row { caption, states, fixed: false });
+    }
+    write(&a.out, "layers", &rows)
+}
+
+/// Height of the frame of a foot that comes down, metres.
+const LANDING_METRES: f32 = 0.075;
 
 fn write(folder: &Path, name: &str, rows: &[Row]) -> Result<()> {
     let path = folder.join(format!("{name}.svg"));

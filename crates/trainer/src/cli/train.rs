@@ -85,8 +85,9 @@ fn train(run: &mut Run, iterations: Option<u64>) -> Result<()> {
         done += 1;
         let p = &report.population;
         bar.set_position(run.training.samples);
+        let imitated = p.imitation / p.ticks.max(1) as f64;
         bar.set_message(format!(
-            "style {:.2} task {:.2} episode {:.0} kl {:.3} distance {:.2} secs {:.2}+{:.2}+{:.2}",
+            "style {:.2} task {:.2} imitation {imitated:.2} episode {:.0} kl {:.3} distance {:.2} secs {:.2}+{:.2}+{:.2}",
             report.style,
             p.task / p.ticks.max(1) as f64,
             p.episode_ticks as f64 / f64::from(p.episodes.max(1)),

@@ -1,7 +1,7 @@
 //! One character that learns: its body, its command, its history and its episode.
 
 use glam::Vec2;
-use physics_bridge::{Character, Model, Pose, Terrain};
+use physics_bridge::{Character, Model};
 use policy_core::{
     ActionScaling, Body, CharacterState, DISCRIMINATOR_INPUT_LEN, DOF_COUNT, FrameHistory, Heading,
     JointTargets, OBSERVATION_LEN, POLICY_INPUT_LEN, discriminator_frame_into, observe_into, target_input,
@@ -9,12 +9,14 @@ use policy_core::{
 
 use super::command::{Command, DT_SECS};
 use super::config::{EnvironmentConfig, Task};
-use super::demonstrations::StartPose;
+use super::demonstrations::{Demonstrations, Moment};
+use super::imitation::Likeness;
 use super::population::Stage;
 use super::reward::{RewardTerms, standing_reward, target_reward};
 use crate::Rng;
-use crate::clip::placed;
 use crate::ppo::Done;
+
+mod start;
 
 /// What a finished episode was.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -39,10 +41,9 @@ pub struct Agent {
     /// Age at which the episode began.
     born_at: u32,
     place: (f64, f64),
+    /// What it is to imitate next, and for how many ticks it may be far from it.
+    imitated: Option<(Moment, u32)>,
 }
-
-/// Characters on a terrain start this near to its middle, metres along each axis.
-const TERRAIN_HALF_METRES: f32 = 25.0;
 
 impl Agent {
     /// A character with its own random numbers; [`Agent::reset`] starts its first episode.
@@ -57,6 +58,7 @@ impl Agent {
             age: 0,
             born_at: 0,
             place: (0.0, 0.0),
+            imitated: None,
         }
     }
 
@@ -79,97 +81,38 @@ impl Agent {
         }
         let at = (self.position(), self.heading().angle());
         self.command.aim(config, stage.course, at, &mut self.rng);
+        if limp || config.imitation == 0.0 {
+            self.imitated = None;
+        }
         // Random ages at the start, or a population without falls would end its episodes as one.
         let ticks = config.episode_ticks as usize;
         self.born_at = self.rng.index(if first { ticks } else { ticks.div_ceil(4) }) as u32;
         self.age = self.born_at;
     }
 
-    /// A start state out of other clips, those of any node, those around the place on the course, or the last node's.
-    fn draw_start(&mut self, stage: &Stage<'_>) -> StartPose {
-        let start = &stage.config.start;
-        let nodes = stage.demonstrations.len();
-        let node = match stage.start_demonstrations {
-            Some(other) if self.rng.chance(start.other) => return other.draw_start(&mut self.rng),
-            _ if self.rng.chance(start.anywhere) => self.rng.index(nodes),
-            _ if start.along => {
-                let [from, to] = stage.course.edges()[self.command.place.edge];
-                if self.rng.chance(self.command.place.t) { to } else { from }
+    /// Writes the action that would follow the imitated clip from here; NaN when there is none.
+    pub fn guide_into(&self, stage: &Stage<'_>, scaling: &ActionScaling, out: &mut [f32]) {
+        match self.imitated {
+            Some((moment, _)) => {
+                let angles = own_clips(stage).ahead(moment);
+                let scales = angles.iter().zip(scaling.centre()).zip(scaling.gain());
+                let actions =
+                    scales.map(|((angle, centre), gain)| ((angle - centre) / gain).clamp(-1.0, 1.0));
+                out.iter_mut().zip(actions).for_each(|(out, action)| *out = action);
             }
-            _ => nodes - 1,
-        };
-        stage.demonstrations[node].draw_start(&mut self.rng)
-    }
-
-    /// Sets the character down in a random heading, lifted until nothing is in the ground.
-    fn start_from(&mut self, start: &StartPose) {
-        let (x, y) = self.place;
-        let mut pose = placed(&start.pose, x, y, f64::from(self.rng.angle()));
-        pose.qpos[2] += f64::from(self.character.model().height_at(x as f32, y as f32));
-        self.set(&pose);
-        let clearance = self.character.clearance();
-        if clearance < 0.0 {
-            pose.qpos[2] -= f64::from(clearance);
-            self.set(&pose);
-        }
-        self.character.sense_into(&mut self.state);
-        self.history.clear();
-        for frame in start.frames.iter() {
-            *self.history.push() = *frame;
+            None => out.fill(f32::NAN),
         }
     }
 
-    fn set(&mut self, pose: &Pose) {
-        self.character.set_pose(&pose.qpos, &pose.qvel).expect("a clip's pose was tried when it was fitted");
-    }
-
-    /// Chooses where the next episode starts: on flat ground at the origin, on a terrain anywhere near its middle.
-    fn choose_place(&mut self) {
-        if self.character.model().terrain() != Terrain::Flat {
-            let half = f64::from(TERRAIN_HALF_METRES);
-            let mut along = || half * f64::from(self.rng.range(-1.0, 1.0));
-            self.place = (along(), along());
-        }
-    }
-
-    /// Drops the character in a random attitude with loose joints and lets it come to rest for a while.
-    fn drop_limp(&mut self, stage: &Stage<'_>, start: &StartPose) {
-        let mut pose = placed(&start.pose, self.place.0, self.place.1, 0.0);
-        let turn = glam::Quat::from_euler(
-            glam::EulerRot::ZYX,
-            self.rng.angle(),
-            self.rng.range(-1.6, 1.6),
-            self.rng.angle(),
-        );
-        pose.qpos[2] =
-            0.7 + f64::from(self.character.model().height_at(self.place.0 as f32, self.place.1 as f32));
-        pose.qpos[3..7].copy_from_slice(&[turn.w, turn.x, turn.y, turn.z].map(f64::from));
-        pose.qvel.fill(0.0);
-        if self.character.set_pose(&pose.qpos, &pose.qvel).is_err() {
-            return self.start_from(start);
-        }
-        self.history.clear();
-        let ticks = 12 + self.rng.index(24);
-        for _ in 0..ticks {
-            self.character.sense_into(&mut self.state);
-            self.push_frame(stage);
-            self.go_limp();
-            if self.character.step().is_err() {
-                return self.start_from(start);
-            }
-        }
-        self.character.sense_into(&mut self.state);
-        self.push_frame(stage);
-    }
-
-    /// Targets that follow the joints: nearly no torque but the joints' damping.
-    fn go_limp(&mut self) {
-        let pose = self.character.pose();
-        let mut targets = JointTargets::default();
-        for (target, angle) in targets.0.iter_mut().zip(&pose.qpos[7..]) {
-            *target = *angle as f32;
-        }
-        self.character.actuate(&targets);
+    /// Moves what is imitated on by a tick; the reward for being like it and how the episode ends by it.
+    fn imitate(&mut self, stage: &Stage<'_>) -> (f32, Done) {
+        let Some((moment, free)) = self.imitated else { return (0.0, Done::No) };
+        let Some(moment) = own_clips(stage).after(moment) else { return (0.0, Done::TimedOut) };
+        self.imitated = Some((moment, free.saturating_sub(1)));
+        let is = Likeness::of(&self.state);
+        let [clip, mirrored] = own_clips(stage).likenesses(moment);
+        let lost = free == 0 && is.is_lost(clip) && is.is_lost(mirrored);
+        (is.reward(clip).max(is.reward(mirrored)), if lost { Done::Failed } else { Done::No })
     }
 
     fn push_frame(&mut self, stage: &Stage<'_>) {
@@ -223,18 +166,18 @@ impl Agent {
         self.age += 1;
         let velocity = (self.position() - before) / DT_SECS;
         let speed = stage.course.speed_mps(self.command.place);
+        let height = (config.height, stage.course.pelvis_metres(self.command.place));
         let terms = match config.task {
-            Task::Target => target_reward(&self.state, velocity, self.command.target, speed),
+            Task::Target => target_reward(&self.state, velocity, self.command.target, speed)
+                .with_height(&self.state, height),
             Task::Stand => standing_reward(&self.state),
         };
-        let done = if diverged || !self.state.is_finite() || self.has_fallen(stage) {
-            Done::Failed
-        } else if self.age >= config.episode_ticks {
-            Done::TimedOut
-        } else {
-            Done::No
-        };
-        (terms, done)
+        if diverged || !self.state.is_finite() || self.has_fallen(stage) {
+            return (terms, Done::Failed);
+        }
+        let (imitation, lost) = self.imitate(stage);
+        let old = self.age >= config.episode_ticks;
+        (RewardTerms { imitation, ..terms }, if lost == Done::No && old { Done::TimedOut } else { lost })
     }
 
     /// Renews target and place on the course, after the tick's reward.
@@ -263,6 +206,11 @@ impl Agent {
         let factor = stage.course.fall_height(self.command.place);
         factor > 0.0 && fallen(&self.state, factor)
     }
+}
+
+/// The clips of the skill that is learned: the last node's.
+fn own_clips<'a>(stage: &Stage<'a>) -> &'a Demonstrations {
+    stage.demonstrations[stage.demonstrations.len() - 1]
 }
 
 /// Draws of a start state until one is none that fails at once; the last one is taken as it is.

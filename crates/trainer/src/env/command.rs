@@ -27,6 +27,8 @@ pub struct Command {
     goal: f32,
     /// Coordinate a tick; zero for one that rests.
     rate: f32,
+    /// Ticks that a moving coordinate stays where it came to.
+    rest_ticks: u32,
     target_ticks: u32,
     /// Direction of a stick held by a player, radians; `None` for targets fixed in the world.
     stick: Option<f32>,
@@ -70,7 +72,10 @@ impl Command {
         }
         if self.rate > 0.0 {
             self.asked += (self.goal - self.asked).clamp(-self.rate, self.rate);
-            if self.asked == self.goal && rng.chance(1.0 / 30.0) {
+            self.rest_ticks = self.rest_ticks.saturating_sub(u32::from(self.asked == self.goal));
+            if self.asked == self.goal && self.rest_ticks == 0 {
+                let secs = rng.range(config.edge_rest_secs[0], config.edge_rest_secs[1]);
+                self.rest_ticks = (secs / DT_SECS) as u32;
                 self.goal = course.draw(self.path, rng);
                 if rng.chance(config.jump) {
                     self.asked = self.goal;
@@ -170,6 +175,37 @@ mod tests {
             }
         }
         assert!(targets > 100 && (0.2..0.5).contains(&(at_child as f32 / count as f32)));
+    }
+
+    #[test]
+    fn a_moving_coordinate_rests_where_it_came_to() {
+        let config = EnvironmentConfig {
+            edge_sweep_secs: [0.1, 0.1],
+            edge_rest_secs: [2.0, 2.0],
+            jump: 0.0,
+            ..Default::default()
+        };
+        let (course, mut rng) = (edge(), Rng::new(4, 1));
+        let (mut rests, mut moves) = (0, 0);
+        for _ in 0..50 {
+            let mut command = Command::start(&config, &course, &mut rng);
+            command.aim(&config, &course, (Vec2::ZERO, 0.0), &mut rng);
+            let mut still = 60;
+            for _ in 0..300 {
+                let before = command.place.t;
+                command.advance(&config, &course, Vec2::ZERO, &mut rng);
+                if command.place.t == before {
+                    still += 1;
+                } else {
+                    moves += 1;
+                    // Either on its way, a tenth of a second at most, or after a rest of two seconds.
+                    assert!(still == 0 || still >= 58, "{still}");
+                    rests += usize::from(still > 0);
+                    still = 0;
+                }
+            }
+        }
+        assert!(rests > 50 && moves > rests, "{rests} {moves}");
     }
 
     #[test]

@@ -54,6 +54,12 @@ pub struct EnvironmentConfig {
     pub speed_mps: f32,
     /// What the task reward asks for.
     pub task: Task,
+    /// Share of the task reward that is for the height of the pelvis: that of the clips at the place on the course, of skills
+    /// trained together. It says how low to be between an upright gait and one on the ground.
+    pub height: f32,
+    /// Weight of the reward for imitating the clip tick by tick from where the episode starts in it; above zero an episode
+    /// fails when it has lost the clip and times out at the clip's end.
+    pub imitation: f32,
     /// When an episode fails.
     pub fall: Fall,
     /// Factor on the heights of the fall rule; less than 1 for low gaits.
@@ -68,6 +74,9 @@ pub struct EnvironmentConfig {
     pub stick: f32,
     /// Seconds in which a moving coordinate crosses an edge, least and most.
     pub edge_sweep_secs: [f32; 2],
+    /// Seconds that a moving coordinate rests where it came to, least and most: what goes wrong after a change may take its
+    /// time.
+    pub edge_rest_secs: [f32; 2],
     /// Share of moving coordinates that jump to where they are asked to.
     pub jump: f32,
     /// Seconds that the place on the course takes at least to cross an edge of this skill, as in a pack; 0 for none.
@@ -88,6 +97,8 @@ impl Default for EnvironmentConfig {
             episode_ticks: 300,
             speed_mps: 1.25,
             task: Task::Target,
+            height: 0.0,
+            imitation: 0.0,
             fall: Fall::Upright,
             fall_height: 1.0,
             target_metres: [1.0, 10.0],
@@ -95,6 +106,7 @@ impl Default for EnvironmentConfig {
             stop: 0.15,
             stick: 0.0,
             edge_sweep_secs: [0.5, 6.0],
+            edge_rest_secs: [0.0, 2.0],
             jump: 0.15,
             edge_secs: 0.0,
             start: Start::default(),

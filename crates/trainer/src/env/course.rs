@@ -17,6 +17,8 @@ pub struct CourseNode {
     pub share: f32,
     /// Factor on the weight of the task reward.
     pub task: f32,
+    /// Height of the pelvis above the ground in its clips, mean, metres.
+    pub pelvis_metres: f32,
     /// Seconds that its edges take at least; the longer time of the two ends holds.
     pub edge_secs: f32,
 }
@@ -32,6 +34,7 @@ impl CourseNode {
             fall_height,
             share,
             task: 1.0,
+            pelvis_metres: 0.0,
             edge_secs: config.edge_secs,
         }
     }
@@ -141,6 +144,12 @@ impl Course {
         self.between(place, |node| node.speed_mps)
     }
 
+    /// Height of the pelvis above the ground, metres.
+    #[must_use]
+    pub fn pelvis_metres(&self, place: Place) -> f32 {
+        self.between(place, |node| node.pelvis_metres)
+    }
+
     /// Least seconds to cross the edge, 0 for no limit.
     #[must_use]
     pub fn edge_secs(&self, place: Place) -> f32 {
@@ -201,7 +210,15 @@ mod tests {
     use super::*;
 
     fn node(name: &str, speed_mps: f32) -> CourseNode {
-        CourseNode { name: name.into(), speed_mps, fall_height: 1.0, share: 1.0, task: 1.0, edge_secs: 0.0 }
+        CourseNode {
+            name: name.into(),
+            speed_mps,
+            fall_height: 1.0,
+            share: 1.0,
+            task: 1.0,
+            pelvis_metres: 0.0,
+            edge_secs: 0.0,
+        }
     }
 
     fn course() -> Course {

@@ -1,42 +1,16 @@
 //! Clips made ready to learn from: fitted, lifted, run through the physics' forward kinematics, turned into
 //! normalised discriminator frames and start states.
 
-use physics_bridge::{Character, Model, Pose, PoseError};
+use physics_bridge::{Model, Pose};
 use policy_core::{
-    CharacterState, DISCRIMINATOR_INPUT_LEN, FRAME_AGES, FRAME_LEN, HISTORY_LEN, Normaliser, OBSERVATION_LEN,
-    discriminator_frame_into, observe_into,
+    CharacterState, DISCRIMINATOR_INPUT_LEN, DOF_COUNT, FRAME_AGES, FRAME_LEN, HISTORY_LEN, Normaliser,
+    discriminator_frame_into,
 };
 
+use super::fitted::{Fitted, SourceError, fit};
+use super::imitation::Likeness;
 use crate::Rng;
-use crate::clip::{Clip, ClipError, JointLimits, Motion};
-
-/// The normalisers of the whole graph.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Normalisers {
-    /// Of the 223 observed numbers.
-    pub observation: Normaliser,
-    /// Of the 125 numbers of a discriminator frame.
-    pub frame: Normaliser,
-}
-
-/// Why clips can't be made ready.
-#[derive(Debug, thiserror::Error)]
-#[non_exhaustive]
-pub enum SourceError {
-    /// A clip is wrong.
-    #[error(transparent)]
-    Clip(#[from] ClipError),
-    /// A fitted pose is refused by the physics.
-    #[error("clip {clip}: pose {index} is no pose of the humanoid")]
-    Pose {
-        /// Name of the clip.
-        clip: String,
-        /// Index of the pose.
-        index: usize,
-        /// What is wrong with it.
-        source: PoseError,
-    },
-}
+use crate::clip::{Clip, Motion, TICK_STRIDE};
 
 /// One fitted clip with the frames a discriminator sees.
 #[derive(Clone, Debug)]
@@ -44,8 +18,22 @@ struct Source {
     motion: Motion,
     /// Normalised frames, one for each pose.
     frames: Vec<[f32; FRAME_LEN]>,
+    /// What an imitation of each pose is held against.
+    likenesses: Vec<Likeness>,
+    /// Index of the source that is its mirror image; its own when it is taken one way round only.
+    mirror: usize,
     /// Share of this clip when one is drawn.
     share: f32,
+}
+
+/// Poses that motors lag behind: 0.1 s, damping over gain of every joint of the humanoid, and half a tick.
+const AHEAD: usize = 14;
+
+/// A moment of a clip of some demonstrations.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Moment {
+    source: usize,
+    index: usize,
 }
 
 /// A start state and the frames that led to it.
@@ -55,6 +43,8 @@ pub struct StartPose {
     pub pose: Pose,
     /// Normalised frames, oldest first, the last one that of the pose.
     pub frames: Box<[[f32; FRAME_LEN]; HISTORY_LEN]>,
+    /// When that is.
+    pub moment: Moment,
 }
 
 /// The clips of one skill.
@@ -64,61 +54,21 @@ pub struct Demonstrations {
     shares: f32,
 }
 
-/// A clip on the ground: its motion, and state and clearance of every pose.
-#[derive(Clone, Debug)]
-pub struct Fitted {
-    /// The motion, lifted.
-    pub motion: Motion,
-    /// What each pose senses, by the physics' forward kinematics.
-    pub states: Vec<CharacterState>,
-    /// Height of each pose's lowest point, metres; negative inside the ground.
-    pub clearances: Vec<f32>,
-    /// How far the clip was lifted, metres.
-    pub lift: f32,
-}
-
-/// Fits a clip and lifts it so that a fifth of its poses touch the ground or sink in.
-///
-/// # Errors
-/// When the clip is too short or the physics refuses a pose.
-pub fn fit(clip: &Clip, model: &Model) -> Result<Fitted, SourceError> {
-    let (low, high) = model.joint_limits();
-    let mut motion = Motion::fit(clip, JointLimits { low, high })?;
-    let mut lowest = states(&motion, model)?.1;
-    lowest.sort_by(f32::total_cmp);
-    let lift = -lowest[lowest.len() / 5];
-    motion.lift(f64::from(lift));
-    let (states, clearances) = states(&motion, model)?;
-    Ok(Fitted { motion, states, clearances, lift })
-}
-
-/// State and clearance of every pose by the physics' forward kinematics.
-fn states(motion: &Motion, model: &Model) -> Result<(Vec<CharacterState>, Vec<f32>), SourceError> {
-    let mut character = Character::new(model);
-    let mut states = vec![CharacterState::default(); motion.poses.len()];
-    let mut clearances = Vec::with_capacity(motion.poses.len());
-    for (index, (pose, state)) in motion.poses.iter().zip(&mut states).enumerate() {
-        let refused = |source| SourceError::Pose { clip: motion.name.clone(), index, source };
-        character.set_pose(&pose.qpos, &pose.qvel).map_err(refused)?;
-        character.sense_into(state);
-        clearances.push(character.clearance());
-    }
-    Ok((states, clearances))
-}
-
 impl Demonstrations {
-    /// Makes clips and their mirror images ready; `share` says how often each is drawn.
+    /// Makes clips ready, and their mirror images where the last entry says so; `share` says how often each is drawn.
     ///
     /// # Errors
     /// When a clip is too short or the physics refuses a pose.
     pub fn from_clips(
-        clips: &[(Clip, f32)],
+        clips: &[(Clip, f32, bool)],
         model: &Model,
         normaliser: &Normaliser,
     ) -> Result<Self, SourceError> {
         let mut sources = Vec::new();
-        for (clip, share) in clips {
-            for clip in [clip.clone(), clip.mirrored()] {
+        for (clip, share, mirrored) in clips {
+            let both = [Some(clip.clone()), mirrored.then(|| clip.mirrored())];
+            let (first, ways) = (sources.len(), both.iter().flatten().count());
+            for (way, clip) in both.into_iter().flatten().enumerate() {
                 let Fitted { motion, states, .. } = fit(&clip, model)?;
                 let frame = |state: &CharacterState| {
                     let mut frame = [0.0; FRAME_LEN];
@@ -127,7 +77,9 @@ impl Demonstrations {
                     frame
                 };
                 let frames = states.iter().map(frame).collect();
-                sources.push(Source { motion, frames, share: share * 0.5 });
+                let likenesses = states.iter().map(Likeness::of).collect();
+                let mirror = first + (way + 1) % ways;
+                sources.push(Source { motion, frames, likenesses, mirror, share: share / ways as f32 });
             }
         }
         let shares = sources.iter().map(|s| s.share).sum();
@@ -139,19 +91,60 @@ impl Demonstrations {
         self.sources.iter().map(|s| &s.motion)
     }
 
-    fn draw(&self, rng: &mut Rng) -> (&Source, usize) {
+    /// Mean height of the pelvis above the ground, metres.
+    #[must_use]
+    pub fn pelvis_metres(&self) -> f32 {
+        let of = |s: &Source| {
+            s.likenesses.iter().map(Likeness::pelvis_metres).sum::<f32>() / s.likenesses.len() as f32
+        };
+        self.sources.iter().map(|s| s.share * of(s)).sum::<f32>() / self.shares
+    }
+
+    fn draw(&self, rng: &mut Rng) -> Moment {
         let mut left = rng.uniform() * self.shares;
-        let drawn = self.sources.iter().find(|s| {
+        let drawn = self.sources.iter().position(|s| {
             left -= s.share;
             left < 0.0
         });
-        let source = drawn.unwrap_or(&self.sources[self.sources.len() - 1]);
-        (source, rng.index(source.motion.poses.len()))
+        let source = drawn.unwrap_or(self.sources.len() - 1);
+        Moment { source, index: rng.index(self.sources[source].motion.poses.len()) }
+    }
+
+    /// A moment in the first tenth of a second of a clip.
+    pub fn draw_beginning(&self, rng: &mut Rng) -> Moment {
+        Moment { source: self.draw(rng).source, index: rng.index(3 * TICK_STRIDE) }
+    }
+
+    /// A control tick later; `None` when the clip is over.
+    #[must_use]
+    pub fn after(&self, moment: Moment) -> Option<Moment> {
+        let motion = &self.sources[moment.source].motion;
+        let index = moment.index + TICK_STRIDE;
+        let index = if motion.looping { index % motion.poses.len() } else { index };
+        (index < motion.poses.len()).then_some(Moment { index, ..moment })
+    }
+
+    /// Joint angles that motors without lag would need now to be at the clip's pose a tick later: those of the pose that lies
+    /// ahead by the time constant of the joints, damping over gain, and half a tick.
+    #[must_use]
+    pub fn ahead(&self, moment: Moment) -> [f32; DOF_COUNT] {
+        let motion = &self.sources[moment.source].motion;
+        let (index, len) = (moment.index + AHEAD, motion.poses.len());
+        let pose = &motion.poses[if motion.looping { index % len } else { index.min(len - 1) }];
+        std::array::from_fn(|joint| pose.qpos[7 + joint] as f32)
+    }
+
+    /// What an imitation is held against: that moment, and the same of the clip's mirror image.
+    #[must_use]
+    pub fn likenesses(&self, moment: Moment) -> [&Likeness; 2] {
+        [moment.source, self.sources[moment.source].mirror]
+            .map(|source| &self.sources[source].likenesses[moment.index])
     }
 
     /// Draws a moment of a clip and writes the discriminator's input there.
     pub fn sample_into(&self, rng: &mut Rng, out: &mut [f32; DISCRIMINATOR_INPUT_LEN]) {
-        let (source, index) = self.draw(rng);
+        let Moment { source, index } = self.draw(rng);
+        let source = &self.sources[source];
         for (chunk, age) in out.chunks_exact_mut(FRAME_LEN).zip(FRAME_AGES) {
             chunk.copy_from_slice(&source.frames[source.motion.earlier(index, age)]);
         }
@@ -160,73 +153,12 @@ impl Demonstrations {
     /// Draws a start state.
     #[must_use]
     pub fn draw_start(&self, rng: &mut Rng) -> StartPose {
-        let (source, index) = self.draw(rng);
+        let moment = self.draw(rng);
+        let (source, index) = (&self.sources[moment.source], moment.index);
         let mut frames = Box::new([[0.0; FRAME_LEN]; HISTORY_LEN]);
         for (age, frame) in frames.iter_mut().rev().enumerate() {
             *frame = source.frames[source.motion.earlier(index, age)];
         }
-        StartPose { pose: source.motion.poses[index], frames }
-    }
-}
-
-impl Normalisers {
-    /// Means and deviations over all poses of the clips and their mirror images, every clip weighing the same.
-    ///
-    /// # Errors
-    /// When a clip is too short or the physics refuses a pose.
-    ///
-    /// # Panics
-    /// When there is no clip.
-    pub fn from_clips(clips: &[Clip], model: &Model) -> Result<Self, SourceError> {
-        assert!(!clips.is_empty(), "a normaliser needs a clip");
-        let mut observation = Moments::new(OBSERVATION_LEN);
-        let mut frame = Moments::new(FRAME_LEN);
-        for clip in clips {
-            for clip in [clip.clone(), clip.mirrored()] {
-                let Fitted { states, .. } = fit(&clip, model)?;
-                let weight = 1.0 / states.len() as f64;
-                for state in &states {
-                    let mut seen = [0.0; OBSERVATION_LEN];
-                    observe_into(state, &mut seen);
-                    observation.add(&seen, weight);
-                    let mut seen = [0.0; FRAME_LEN];
-                    discriminator_frame_into(state, &mut seen);
-                    frame.add(&seen, weight);
-                }
-            }
-        }
-        Ok(Self { observation: observation.normaliser(), frame: frame.normaliser() })
-    }
-}
-
-/// Weighted sums of values and their squares.
-struct Moments {
-    sum: Vec<f64>,
-    square: Vec<f64>,
-    weight: f64,
-}
-
-impl Moments {
-    fn new(len: usize) -> Self {
-        Self { sum: vec![0.0; len], square: vec![0.0; len], weight: 0.0 }
-    }
-
-    fn add(&mut self, values: &[f32], weight: f64) {
-        self.weight += weight;
-        for ((v, sum), square) in values.iter().zip(&mut self.sum).zip(&mut self.square) {
-            *sum += weight * f64::from(*v);
-            *square += weight * f64::from(*v).powi(2);
-        }
-    }
-
-    fn normaliser(&self) -> Normaliser {
-        let mean: Vec<f32> = self.sum.iter().map(|s| (s / self.weight) as f32).collect();
-        let deviation = |(sum, square): (&f64, &f64)| {
-            let variance = square / self.weight - (sum / self.weight).powi(2);
-            (variance.max(0.0).sqrt() as f32).max(policy_core::LEAST_DEVIATION)
-        };
-        let deviation: Vec<f32> = self.sum.iter().zip(&self.square).map(deviation).collect();
-        Normaliser::from_mean_and_deviation(&mean, &deviation)
-            .expect("moments of finite numbers are finite and the deviation has a floor")
+        StartPose { pose: source.motion.poses[index], frames, moment }
     }
 }

@@ -8,7 +8,8 @@ use rayon::prelude::*;
 use super::agent::{Agent, Episode};
 use super::config::EnvironmentConfig;
 use super::course::Course;
-use super::demonstrations::{Demonstrations, Normalisers};
+use super::demonstrations::Demonstrations;
+use super::normalisers::Normalisers;
 use super::reward::RewardTerms;
 use crate::Rng;
 use crate::ppo::Done;
@@ -63,6 +64,8 @@ pub struct PopulationReport {
     pub ticks: u64,
     /// Task reward of all ticks.
     pub task: f64,
+    /// Reward of all ticks for being like the clip.
+    pub imitation: f64,
     /// |speed - commanded speed| of all ticks, metres per second.
     pub speed_error: f64,
     /// By node of the course.
@@ -189,6 +192,7 @@ impl Population {
         }
         for terms in &self.terms {
             report.task += f64::from(terms.task);
+            report.imitation += f64::from(terms.imitation);
             report.speed_error += f64::from((terms.speed_mps - terms.commanded_mps).abs());
         }
     }

@@ -8,10 +8,22 @@ use policy_core::{Body, CharacterState, Heading};
 pub struct RewardTerms {
     /// Task reward, 0 to 1.
     pub task: f32,
+    /// For being like the clip at the moment that is to be imitated, 0 to 1.
+    pub imitation: f32,
     /// Speed towards the target, metres per second.
     pub speed_mps: f32,
     /// Speed commanded, metres per second.
     pub commanded_mps: f32,
+}
+
+impl RewardTerms {
+    /// With a share of the task reward for a pelvis at a height above the ground, metres: `exp(-|error| / 0.15)`.
+    #[must_use]
+    pub fn with_height(self, state: &CharacterState, (share, metres): (f32, f32)) -> Self {
+        let height = state.body(Body::Pelvis).position.z - state.ground_height;
+        let reward = (-(height - metres).abs() / 0.15).exp();
+        Self { task: (1.0 - share) * self.task + share * reward, ..self }
+    }
 }
 
 /// Within this distance of the target the commanded speed falls to zero, metres.
@@ -33,15 +45,18 @@ pub fn target_reward(state: &CharacterState, velocity: Vec2, target: Vec2, speed
     let commanded_mps = speed_mps * near;
     let along = velocity.dot(direction);
     let sideways = velocity.perp_dot(direction);
-    let width = (commanded_mps / 1.25).max(0.6);
+    let width = (commanded_mps / 1.25).sqrt().max(0.6);
     let error = ((along - commanded_mps).powi(2) + 0.25 * sideways * sideways) / (width * width);
     // Close by, which way the target lies says nothing.
     let facing = (1.0 - near) + near * facing_now.dot(direction).max(0.0);
     let speed = 0.4 * (-2.0 * error).exp() + 0.3 * (-2.0 * error / 9.0).exp();
-    RewardTerms { task: speed + 0.3 * facing, speed_mps: along, commanded_mps }
+    RewardTerms { task: speed + 0.3 * facing, speed_mps: along, commanded_mps, ..RewardTerms::default() }
 }
 
-/// Reward for standing: pelvis and head at their heights, trunk upright, still once it is up.
+/// Speed of the pelvis up to which a rise is at ease, metres per second.
+const RISING_MPS: f32 = 1.5;
+
+/// Reward for standing: pelvis and head at their heights, trunk upright, still once it is up, without a leap.
 #[must_use]
 pub fn standing_reward(state: &CharacterState) -> RewardTerms {
     let above = |body: Body| state.body(body).position.z - state.ground_height;
@@ -51,8 +66,12 @@ pub fn standing_reward(state: &CharacterState) -> RewardTerms {
     let speed = state.body(Body::Pelvis).linear_velocity.truncate().length();
     let height = 0.5 * (pelvis + head);
     let still = if height > 0.9 { (-speed * speed).exp() } else { 0.0 };
+    // Nobody jumps to his feet: what is faster than a rise at ease pays little.
+    let excess = (state.body(Body::Pelvis).linear_velocity.length() - RISING_MPS).max(0.0);
+    let calm = (-2.0 * excess).exp();
     // Linear in the height, so that the first centimetres off the ground pay as well as the last.
-    RewardTerms { task: 0.5 * height + 0.3 * height * up + 0.2 * still, ..RewardTerms::default() }
+    let task = calm * (0.5 * height + 0.3 * height * up + 0.2 * still);
+    RewardTerms { task, ..RewardTerms::default() }
 }
 
 #[cfg(test)]

@@ -64,6 +64,20 @@ pub fn measure_layers(
     measured.collect()
 }
 
+/// States of a character that goes straight ahead for 8 s with each layer `t` of the way from the first node's to the
+/// second's, after it has settled; `None` when it falls.
+#[must_use]
+pub fn watch_layers(
+    model: &Model,
+    pack: &Arc<CharacterPack>,
+    (from, to): (usize, usize),
+    t: [f32; 3],
+) -> Option<Vec<CharacterState>> {
+    let mut weights = [0.0; MAX_LAYERS];
+    weights[..LAYERS].copy_from_slice(&t);
+    walk(model, pack, from, Some(Blend::between_per_layer(from, to, weights)), 0)
+}
+
 /// States of a walk; `None` when it ended in a fall.
 type Walk = Option<Vec<CharacterState>>;
 

@@ -10,7 +10,7 @@ mod skills;
 mod subject;
 mod upright;
 
-pub use layers::{LayerReport, measure_layers};
+pub use layers::{LayerReport, measure_layers, watch_layers};
 pub use motion::{MotionReport, clip_states, pose_error, watch};
 pub use paths::{measure_coordinates, measure_sweep};
 pub use push::measure_push;

@@ -34,6 +34,9 @@ pub struct PpoConfig {
     pub bound_penalty: f32,
     /// Share that a policy's running mean keeps at every update.
     pub average: f32,
+    /// Weight of the squared distance to the guiding actions of a rollout, where it has any.
+    #[serde(skip)]
+    pub guide: f32,
     /// Weight of the squared distance to the parent's parameters.
     pub regularisation: f32,
     /// Hidden sizes of the critic.
@@ -57,6 +60,7 @@ impl Default for PpoConfig {
             gradient_norm: 1.0,
             bound_penalty: 10.0,
             average: 0.99,
+            guide: 0.0,
             regularisation: 0.0,
             critic_hidden: vec![256, 128],
         }

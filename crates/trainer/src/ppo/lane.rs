@@ -120,6 +120,7 @@ pub(super) struct Shared<'a> {
     pub(super) clip: f32,
     pub(super) deviation: f32,
     pub(super) bound_penalty: f32,
+    pub(super) guide: f32,
     pub(super) scale: f32,
 }
 
@@ -128,7 +129,7 @@ impl Shared<'_> {
     /// row's divergence.
     fn policy_gradient(&self, row: usize, mean: &[f32], delta: &mut [f32], sums: &mut UpdateReport) -> f32 {
         let numbers = row * mean.len()..(row + 1) * mean.len();
-        let (action, acted) = (&self.rollout.actions[numbers.clone()], &self.rollout.means[numbers]);
+        let (action, acted) = (&self.rollout.actions[numbers.clone()], &self.rollout.means[numbers.clone()]);
         let now = log_probability(action, mean, self.deviation);
         let ratio = (now - log_probability(action, acted, self.deviation)).clamp(-20.0, 20.0).exp();
         let advantage = self.rollout.advantages[row];
@@ -140,6 +141,12 @@ impl Shared<'_> {
         for ((d, m), a) in delta.iter_mut().zip(mean).zip(action) {
             let excess = (m.abs() - 1.0).max(0.0).copysign(*m);
             *d = (slope * (a - m) + 2.0 * self.bound_penalty * excess) * self.scale;
+        }
+        if self.guide > 0.0 {
+            let guides = delta.iter_mut().zip(mean).zip(&self.rollout.guides[numbers]);
+            for ((d, m), guide) in guides.filter(|(_, guide)| guide.is_finite()) {
+                *d += 2.0 * self.guide * (m - guide) * self.scale;
+            }
         }
         kl
     }

@@ -31,6 +31,8 @@ pub struct Rollout {
     pub actions: Vec<f32>,
     /// Mean of the distribution they were drawn from.
     pub means: Vec<f32>,
+    /// Actions that the policy is guided towards, `[rows][actions]`; NaN in rows without one. Empty when nothing guides.
+    pub guides: Vec<f32>,
     /// Reward of every row.
     pub rewards: Vec<f32>,
     /// How every row ended.
@@ -67,6 +69,7 @@ impl Rollout {
             critic_inputs: vec![0.0; rows * critic_inputs],
             actions: vec![0.0; rows * actions],
             means: vec![0.0; rows * actions],
+            guides: Vec::new(),
             rewards: scalar.clone(),
             done: vec![Done::No; rows],
             cut_off: Vec::new(),

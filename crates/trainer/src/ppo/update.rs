@@ -71,6 +71,7 @@ impl Learner {
             clip: self.config.clip,
             deviation: self.config.deviation,
             bound_penalty: self.config.bound_penalty,
+            guide: if rollout.guides.is_empty() { 0.0 } else { self.config.guide },
             scale: 1.0 / minibatch.len() as f32,
         };
         let share = minibatch.len().div_ceil(Lane::COUNT);
@@ -114,7 +115,9 @@ impl Learner {
         let config = &self.config;
         for (actor, [sum, weight]) in self.actors.iter_mut().zip(&self.divergence) {
             let kl = sum / weight;
-            if kl > 1.5 * config.target_kl {
+            if config.guide > 0.0 {
+                actor.rate = config.most_actor_rate;
+            } else if kl > 1.5 * config.target_kl {
                 actor.rate /= 1.3;
             } else if kl < config.target_kl / 1.5 {
                 actor.rate *= 1.3;

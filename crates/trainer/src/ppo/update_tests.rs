@@ -126,3 +126,21 @@ fn a_strong_pull_keeps_a_child_at_its_parent() {
     let (free, held) = (distance(0.0), distance(1.0));
     assert!(held < 0.2 * free, "{free} {held}");
 }
+
+#[test]
+fn a_guide_leads_the_policy_and_rows_without_one_do_not() {
+    let led = |guide: f32| {
+        let mut learner = learner(6);
+        learner.config.guide = 100.0;
+        let mut rng = Rng::new(6, 1);
+        let mut carts: Vec<Cart> = (0..CHARACTERS).map(|_| Cart::new(&mut rng)).collect();
+        let mut rollout = Rollout::new((STEPS, CHARACTERS), (2, 3), 1);
+        rollout.guides = vec![guide; STEPS * CHARACTERS];
+        for _ in 0..20 {
+            iterate(&mut learner, &mut carts, &mut rollout, &mut rng);
+        }
+        rollout.means.iter().sum::<f32>() / rollout.means.len() as f32
+    };
+    assert!((led(0.5) - 0.5).abs() < 0.05, "{}", led(0.5));
+    assert!(led(f32::NAN).abs() < 0.3, "{}", led(f32::NAN));
+}

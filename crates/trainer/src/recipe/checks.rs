@@ -55,11 +55,30 @@ impl Recipe {
                 "a time of at least 0, and 0 to 5000 newton",
                 format!("{} and {}", env.push_secs, env.push_newton),
             ),
+            (
+                self.paths.is_empty()
+                    || self
+                        .phases
+                        .iter()
+                        .all(|p| p.guide == 0.0 && p.imitation.unwrap_or(env.imitation) == 0.0),
+                "phases.imitation and guide",
+                "none beside paths",
+                format!("{:?}", self.phases),
+            ),
+            (
+                self.phases.iter().all(|p| p.guide.is_finite() && p.guide >= 0.0),
+                "phases.guide",
+                "a weight of at least 0",
+                format!("{:?}", self.phases),
+            ),
             (!self.phases.is_empty(), "phases", "at least one phase", "none".into()),
             (
-                self.phases.iter().all(|p| unit(p.task)),
-                "phases.task",
-                "a weight in [0, 1]",
+                self.phases.iter().all(|p| {
+                    let imitation = p.imitation.unwrap_or(env.imitation);
+                    unit(p.task) && imitation >= 0.0 && unit(p.task + imitation)
+                }),
+                "phases.task and imitation",
+                "weights in [0, 1] that sum to at most 1",
                 format!("{:?}", self.phases),
             ),
             (
@@ -89,29 +108,40 @@ impl Recipe {
                 format!("{:?}", env.target_secs),
             ),
             (
-                [env.stop, env.stick, env.jump, env.start.other, env.start.anywhere, env.start.ragdoll]
-                    .into_iter()
-                    .all(unit),
-                "environment.stop, stick, jump and start",
+                [
+                    env.height,
+                    env.stop,
+                    env.stick,
+                    env.jump,
+                    env.start.other,
+                    env.start.anywhere,
+                    env.start.ragdoll,
+                ]
+                .into_iter()
+                .all(unit),
+                "environment.height, stop, stick, jump and start",
                 "shares in [0, 1]",
-                format!("{}, {}, {} and {:?}", env.stop, env.stick, env.jump, env.start),
+                format!("{}, {}, {}, {} and {:?}", env.height, env.stop, env.stick, env.jump, env.start),
             ),
             (
                 ordered(env.edge_sweep_secs)
+                    && ordered(env.edge_rest_secs)
                     && env.edge_sweep_secs[0] > 0.0
                     && (0.0..60.0).contains(&env.edge_secs),
-                "environment.edge_sweep_secs and edge_secs",
-                "least and most time above 0, and 0 to 60 s",
-                format!("{:?} and {}", env.edge_sweep_secs, env.edge_secs),
+                "environment.edge_sweep_secs, edge_rest_secs and edge_secs",
+                "least and most time above 0, least and most time, and 0 to 60 s",
+                format!("{:?}, {:?} and {}", env.edge_sweep_secs, env.edge_rest_secs, env.edge_secs),
             ),
             ((0.0..1.0).contains(&ppo.gamma), "ppo.gamma", "a discount in [0, 1)", ppo.gamma.to_string()),
             ((0.0..1.0).contains(&ppo.average), "ppo.average", "a share in [0, 1)", ppo.average.to_string()),
             (unit(ppo.gae_lambda), "ppo.gae_lambda", "a discount in [0, 1]", ppo.gae_lambda.to_string()),
             (positive(ppo.deviation), "ppo.deviation", "a positive deviation", ppo.deviation.to_string()),
             (
-                self.phases.iter().all(|p| p.deviation.is_none_or(positive) && p.ragdoll.is_none_or(unit)),
-                "phases.deviation and ragdoll",
-                "a positive deviation and a share in [0, 1]",
+                self.phases.iter().all(|p| {
+                    p.deviation.is_none_or(positive) && p.ragdoll.is_none_or(unit) && p.other.is_none_or(unit)
+                }),
+                "phases.deviation, ragdoll and other",
+                "a positive deviation and shares in [0, 1]",
                 format!("{:?}", self.phases),
             ),
             (

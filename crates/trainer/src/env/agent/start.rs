@@ -1,0 +1,109 @@
+//! Where episodes start: in clips, in other clips, or limp on the ground.
+
+use physics_bridge::{Pose, Terrain};
+use policy_core::JointTargets;
+
+use super::super::demonstrations::StartPose;
+use super::super::population::Stage;
+use super::{Agent, own_clips};
+use crate::clip::placed;
+
+/// Characters on a terrain start this near to its middle, metres along each axis.
+const TERRAIN_HALF_METRES: f32 = 25.0;
+
+/// Ticks for which a character that starts in another clip may be far from the one it is to imitate.
+const FREE_TICKS: u32 = 20;
+
+impl Agent {
+    /// Chooses where the next episode starts: on flat ground at the origin, on a terrain anywhere near its middle.
+    pub(super) fn choose_place(&mut self) {
+        if self.character.model().terrain() != Terrain::Flat {
+            let half = f64::from(TERRAIN_HALF_METRES);
+            let mut along = || half * f64::from(self.rng.range(-1.0, 1.0));
+            self.place = (along(), along());
+        }
+    }
+
+    /// A start state out of other clips, those of any node, those around the place on the course, or the last node's.
+    pub(super) fn draw_start(&mut self, stage: &Stage<'_>) -> StartPose {
+        let start = &stage.config.start;
+        let nodes = stage.demonstrations.len();
+        let node = match stage.start_demonstrations {
+            Some(other) if self.rng.chance(start.other) => {
+                self.imitated = Some((own_clips(stage).draw_beginning(&mut self.rng), FREE_TICKS));
+                return other.draw_start(&mut self.rng);
+            }
+            _ if self.rng.chance(start.anywhere) => self.rng.index(nodes),
+            _ if start.along => {
+                let [from, to] = stage.course.edges()[self.command.place.edge];
+                if self.rng.chance(self.command.place.t) { to } else { from }
+            }
+            _ => nodes - 1,
+        };
+        let start = stage.demonstrations[node].draw_start(&mut self.rng);
+        self.imitated = (node == nodes - 1).then_some((start.moment, 0));
+        start
+    }
+
+    /// Sets the character down in a random heading, lifted until nothing is in the ground.
+    pub(super) fn start_from(&mut self, start: &StartPose) {
+        let (x, y) = self.place;
+        let mut pose = placed(&start.pose, x, y, f64::from(self.rng.angle()));
+        pose.qpos[2] += f64::from(self.character.model().height_at(x as f32, y as f32));
+        self.set(&pose);
+        let clearance = self.character.clearance();
+        if clearance < 0.0 {
+            pose.qpos[2] -= f64::from(clearance);
+            self.set(&pose);
+        }
+        self.character.sense_into(&mut self.state);
+        self.history.clear();
+        for frame in start.frames.iter() {
+            *self.history.push() = *frame;
+        }
+    }
+
+    fn set(&mut self, pose: &Pose) {
+        self.character.set_pose(&pose.qpos, &pose.qvel).expect("a clip's pose was tried when it was fitted");
+    }
+
+    /// Drops the character in a random attitude with loose joints and lets it come to rest for a while.
+    pub(super) fn drop_limp(&mut self, stage: &Stage<'_>, start: &StartPose) {
+        let mut pose = placed(&start.pose, self.place.0, self.place.1, 0.0);
+        let turn = glam::Quat::from_euler(
+            glam::EulerRot::ZYX,
+            self.rng.angle(),
+            self.rng.range(-1.6, 1.6),
+            self.rng.angle(),
+        );
+        pose.qpos[2] =
+            0.7 + f64::from(self.character.model().height_at(self.place.0 as f32, self.place.1 as f32));
+        pose.qpos[3..7].copy_from_slice(&[turn.w, turn.x, turn.y, turn.z].map(f64::from));
+        pose.qvel.fill(0.0);
+        if self.character.set_pose(&pose.qpos, &pose.qvel).is_err() {
+            return self.start_from(start);
+        }
+        self.history.clear();
+        let ticks = 12 + self.rng.index(24);
+        for _ in 0..ticks {
+            self.character.sense_into(&mut self.state);
+            self.push_frame(stage);
+            self.go_limp();
+            if self.character.step().is_err() {
+                return self.start_from(start);
+            }
+        }
+        self.character.sense_into(&mut self.state);
+        self.push_frame(stage);
+    }
+
+    /// Targets that follow the joints: nearly no torque but the joints' damping.
+    fn go_limp(&mut self) {
+        let pose = self.character.pose();
+        let mut targets = JointTargets::default();
+        for (target, angle) in targets.0.iter_mut().zip(&pose.qpos[7..]) {
+            *target = *angle as f32;
+        }
+        self.character.actuate(&targets);
+    }
+}
