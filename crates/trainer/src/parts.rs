@@ -99,7 +99,7 @@ impl Workplace {
         };
         let course = Course::new(nodes, vec![path]);
         let learner = Learner::new(recipe.ppo.clone(), actors, course.edges().to_vec(), critic, rng);
-        Ok(Parts { course, learner, judges: Judges::new(judges), start_demonstrations })
+        Ok(Parts { course, learner, judges: Judges::new(judges, Vec::new()), start_demonstrations })
     }
 
     /// All skills of some paths together, none of them frozen.
@@ -128,6 +128,18 @@ impl Workplace {
         }
         let paths = recipe.paths.iter().map(|p| p.iter().filter_map(index).collect()).collect();
         let course = Course::new(nodes, paths);
+        let mut halfway = Vec::new();
+        for ends in &recipe.halfway {
+            let edge = ends.each_ref().map(index);
+            let edge = course.edges().iter().position(|e| e.map(Some) == edge);
+            halfway.push(edge.with_context(|| {
+                format!("expected an edge of the paths in halfway, found {} to {}", ends[0], ends[1])
+            })?);
+            let known = Some(self.skill(&ends[1], &recipe.skill)?.discriminator);
+            let seed = seed.wrapping_add(halfway.len() as u64);
+            let learner = DiscriminatorLearner::new(recipe.discriminator.clone(), known, seed, 30);
+            judges.push(Judge { demonstrations: self.halfway_clip(ends)?, discriminator: Some(learner) });
+        }
         let sizes = critic_sizes(recipe, course.place_len());
         let mut rng = Rng::new(seed, 1);
         let critic = match root {
@@ -140,7 +152,16 @@ impl Workplace {
         ensure!(critic.sizes() == sizes, "expected a critic of sizes {sizes:?}, found {:?}", critic.sizes());
         let learner = Learner::new(recipe.ppo.clone(), actors, course.edges().to_vec(), critic, rng);
         let start_demonstrations = self.start_clips(recipe)?;
-        Ok(Parts { course, learner, judges: Judges::new(judges), start_demonstrations })
+        Ok(Parts { course, learner, judges: Judges::new(judges, halfway), start_demonstrations })
+    }
+
+    /// The faster skill's first clip, half-way to a pose of the slower one's.
+    fn halfway_clip(&self, ends: &[String; 2]) -> Result<Demonstrations> {
+        let mut recipes = [self.recipe(&ends[0])?, self.recipe(&ends[1])?];
+        recipes.sort_by(|a, b| a.environment.speed_mps.total_cmp(&b.environment.speed_mps));
+        let [slow, fast] = recipes.map(|recipe| self.clips.load(&recipe.clips[0].name));
+        let clip = fast?.towards(&slow?, 0.5);
+        Ok(Demonstrations::from_clips(&[(clip, 1.0, true)], &self.model, &self.normalisers.frame)?)
     }
 
     /// Clips that a recipe names for starts.

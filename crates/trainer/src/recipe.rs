@@ -26,6 +26,10 @@ pub struct Recipe {
     /// no parent and no clips, and its name is that of the run.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub paths: Vec<Vec<String>>,
+    /// Edges of those paths whose middle has a style of its own: the faster skill's clip half-way to the slower one's pose.
+    /// Without it the middle is judged by both ends, and stopping and going by turns suits both.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub halfway: Vec<[String; 2]>,
     /// Demonstration clips.
     #[serde(default)]
     pub clips: Vec<ClipShare>,

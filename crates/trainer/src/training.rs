@@ -122,7 +122,8 @@ impl Training {
         let together = !self.recipe.paths.is_empty();
         let last = self.course.nodes().len() - 1;
         let mut all = Vec::new();
-        let judges = self.judges.judges.iter_mut();
+        let halfway = self.judges.halfway().to_vec();
+        let (judges, between) = self.judges.judges.split_at_mut(last + 1);
         let nodes = self.course.nodes().iter().zip(self.learner.actors.iter_mut().zip(judges));
         for (i, (node, (actor, judge))) in nodes.enumerate() {
             let role = |what: &str| if together { format!("{}.{what}", node.name) } else { what.to_owned() };
@@ -133,6 +134,12 @@ impl Training {
             if let Some(d) = &mut judge.discriminator {
                 let what = if together || i == last { "discriminator" } else { PARENT_DISCRIMINATOR };
                 all.push((role(what), &mut d.network, Some(&mut d.adam)));
+            }
+        }
+        for (edge, judge) in halfway.iter().zip(between) {
+            let [from, to] = self.course.edges()[*edge].map(|node| &self.course.nodes()[node].name);
+            if let Some(d) = &mut judge.discriminator {
+                all.push((format!("{from}-{to}.discriminator"), &mut d.network, Some(&mut d.adam)));
             }
         }
         all.push(("critic".to_owned(), &mut self.learner.critic, Some(&mut self.learner.critic_adam)));

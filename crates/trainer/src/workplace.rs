@@ -139,10 +139,11 @@ impl Workplace {
 /// Puts a checkpoint's networks into a training; returns the seconds spent before.
 fn restore(training: &mut Training, checkpoint: &Checkpoint, path: &Path) -> Result<f64> {
     for (role, network, adam) in training.networks_mut() {
-        // What a parent's style is like can be learned anew; a running mean begins where the policy is.
+        // What a parent's style is like, or that between two skills, can be learned anew; a running mean begins where the
+        // policy is.
         let actor = role.strip_suffix(AVERAGE).map(|before| format!("{before}actor"));
         let known = checkpoint.networks.contains_key(&role);
-        if role == PARENT_DISCRIMINATOR && !known {
+        if (role == PARENT_DISCRIMINATOR || role.contains('-')) && !known {
             continue;
         }
         let trained = checkpoint.network(actor.filter(|_| !known).as_deref().unwrap_or(&role), path)?;

@@ -60,7 +60,7 @@ pub(crate) fn run(model: &Model, arguments: &Arguments) -> Result<()> {
 
     let names: Vec<&str> = nodes.iter().map(|n| n.name.as_str()).collect();
     let points = |c: &Components, rows: &[Vec<f32>]| -> Vec<[f64; 2]> {
-        rows.iter().map(|row| c.project(row)).map(|p| [f64::from(p[0]), f64::from(p[1])]).collect()
+        rows.iter().map(|row| c.project(row)).map(|p| [p[0], p[1]]).collect()
     };
     let by_policy: Vec<_> = visited.iter().map(|rows| points(&states, rows)).collect();
     scatter(&arguments.out.join("states.svg"), "visited states", &names, &by_policy, &[])?;

@@ -108,6 +108,24 @@ impl Clip {
             * Vec3::new(1.0, 1.0, 0.0)
     }
 
+    /// Every frame this much of the way, in [0, 1], to a pose of `other`: how it begins, half-way to its mirror image. The way
+    /// that is gone shrinks as much. A smaller and slower motion between this one and that pose.
+    #[must_use]
+    pub fn towards(&self, other: &Self, share: f32) -> Self {
+        let (first, mirrored) = (other.root_positions[0], other.mirrored().local_rotations[0]);
+        let rotations: [Quat; BODY_COUNT] =
+            std::array::from_fn(|i| other.local_rotations[0][i].slerp(mirrored[i], 0.5));
+        let root =
+            |p: &Vec3| Vec3::new((1.0 - share) * p.x, (1.0 - share) * p.y, p.z + share * (first.z - p.z));
+        let turn = |frame: &[Quat; BODY_COUNT]| std::array::from_fn(|i| frame[i].slerp(rotations[i], share));
+        Self {
+            name: format!("{} towards {}", self.name, other.name),
+            root_positions: self.root_positions.iter().map(root).collect(),
+            local_rotations: self.local_rotations.iter().map(turn).collect(),
+            ..self.clone()
+        }
+    }
+
     /// The mirror image: left and right swapped, y turned round.
     #[must_use]
     pub fn mirrored(&self) -> Self {

@@ -164,3 +164,18 @@ fn a_missing_folder_or_clip_is_named() {
     let error = ClipError::NoFolder { variable: MOTIONS_VARIABLE }.to_string();
     assert!(error.contains("--motions") && error.contains("DeepMimic"), "{error}");
 }
+
+#[test]
+fn half_way_to_a_stand_a_walk_bends_and_goes_half_as_much() {
+    let (walk, stand) = (swinging(), still(2));
+    let half = walk.towards(&stand, 0.5);
+    assert!((half.cycle_offset().x - 0.5).abs() < 1e-6 && half.duration() == walk.duration());
+    let knee = Body::RightShin.index();
+    let bend = |clip: &Clip| clip.local_rotations[60][knee].angle_between(Quat::IDENTITY);
+    assert!((bend(&walk.towards(&stand, 0.0)) - bend(&walk)).abs() < 1e-3);
+    assert!(bend(&walk) > 0.5 && (bend(&half) - 0.5 * bend(&walk)).abs() < 1e-3);
+    // What it goes towards is the same on both sides, whatever side that clip begins on.
+    let whole = walk.towards(&walk.mirrored(), 1.0);
+    let [left, right] = [Body::LeftShin, Body::RightShin].map(|b| whole.local_rotations[0][b.index()]);
+    assert!(left.angle_between(right) < 1e-3);
+}

@@ -27,6 +27,8 @@ pub struct Command {
     goal: f32,
     /// Coordinate a tick; zero for one that rests.
     rate: f32,
+    /// True for a coordinate that goes to and fro over the whole path.
+    sweeps: bool,
     /// Ticks that a moving coordinate stays where it came to.
     rest_ticks: u32,
     target_ticks: u32,
@@ -43,8 +45,13 @@ impl Command {
         let place = course.place(path, coordinate);
         let mut command =
             Self { path, coordinate, asked: coordinate, goal: coordinate, place, ..Self::default() };
-        // Half of the coordinates move.
-        if course.end(path) > 0.0 && rng.chance(0.5) {
+        // Half of the others move.
+        let end = course.end(path);
+        command.sweeps = end > 0.0 && rng.chance(config.sweep);
+        if command.sweeps {
+            command.goal = if rng.chance(0.5) { end } else { 0.0 };
+            command.rate = 2.0 * end * DT_SECS / rng.range(config.sweep_secs[0], config.sweep_secs[1]);
+        } else if end > 0.0 && rng.chance(0.5) {
             command.rate = DT_SECS / rng.range(config.edge_sweep_secs[0], config.edge_sweep_secs[1]);
             command.goal = course.draw(path, rng);
         }
@@ -72,6 +79,9 @@ impl Command {
         }
         if self.rate > 0.0 {
             self.asked += (self.goal - self.asked).clamp(-self.rate, self.rate);
+            if self.sweeps && self.asked == self.goal {
+                self.goal = if self.goal > 0.0 { 0.0 } else { course.end(self.path) };
+            }
             self.rest_ticks = self.rest_ticks.saturating_sub(u32::from(self.asked == self.goal));
             if self.asked == self.goal && self.rest_ticks == 0 {
                 let secs = rng.range(config.edge_rest_secs[0], config.edge_rest_secs[1]);
@@ -206,6 +216,24 @@ mod tests {
             }
         }
         assert!(rests > 50 && moves > rests, "{rests} {moves}");
+    }
+
+    #[test]
+    fn a_sweep_goes_to_both_ends_and_does_not_rest() {
+        let config = EnvironmentConfig { sweep: 1.0, sweep_secs: [4.0, 4.0], ..EnvironmentConfig::default() };
+        let (course, mut rng) = (edge(), Rng::new(5, 1));
+        for _ in 0..20 {
+            let mut command = Command::start(&config, &course, &mut rng);
+            command.aim(&config, &course, (Vec2::ZERO, 0.0), &mut rng);
+            let (mut ends, mut still) = ([false; 2], 0);
+            for _ in 0..130 {
+                let before = command.place.t;
+                command.advance(&config, &course, Vec2::ZERO, &mut rng);
+                ends = [ends[0] || command.place.t == 0.0, ends[1] || command.place.t == 1.0];
+                still += usize::from(command.place.t == before);
+            }
+            assert!(ends == [true; 2] && still <= 4, "{ends:?} {still}");
+        }
     }
 
     #[test]

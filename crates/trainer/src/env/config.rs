@@ -72,6 +72,10 @@ pub struct EnvironmentConfig {
     pub stop: f32,
     /// Share of episodes whose target goes ahead of the character, as the stick of a pad has it.
     pub stick: f32,
+    /// Share of coordinates that go to and fro over the whole path, without a rest.
+    pub sweep: f32,
+    /// Seconds there and back, least and most.
+    pub sweep_secs: [f32; 2],
     /// Seconds in which a moving coordinate crosses an edge, least and most.
     pub edge_sweep_secs: [f32; 2],
     /// Seconds that a moving coordinate rests where it came to, least and most: what goes wrong after a change may take its
@@ -105,6 +109,8 @@ impl Default for EnvironmentConfig {
             target_secs: [2.0, 7.0],
             stop: 0.15,
             stick: 0.0,
+            sweep: 0.0,
+            sweep_secs: [4.0, 8.0],
             edge_sweep_secs: [0.5, 6.0],
             edge_rest_secs: [0.0, 2.0],
             jump: 0.15,

@@ -54,7 +54,7 @@ pub fn target_reward(state: &CharacterState, velocity: Vec2, target: Vec2, speed
 }
 
 /// Speed of the pelvis up to which a rise is at ease, metres per second.
-const RISING_MPS: f32 = 1.5;
+const RISING_MPS: f32 = 1.2;
 
 /// Reward for standing: pelvis and head at their heights, trunk upright, still once it is up, without a leap.
 #[must_use]
@@ -68,7 +68,7 @@ pub fn standing_reward(state: &CharacterState) -> RewardTerms {
     let still = if height > 0.9 { (-speed * speed).exp() } else { 0.0 };
     // Nobody jumps to his feet: what is faster than a rise at ease pays little.
     let excess = (state.body(Body::Pelvis).linear_velocity.length() - RISING_MPS).max(0.0);
-    let calm = (-2.0 * excess).exp();
+    let calm = (-3.0 * excess).exp();
     // Linear in the height, so that the first centimetres off the ground pay as well as the last.
     let task = calm * (0.5 * height + 0.3 * height * up + 0.2 * still);
     RewardTerms { task, ..RewardTerms::default() }

@@ -103,8 +103,7 @@ fn difference(walks: &[Walk], others: &[Walk]) -> f32 {
 
 /// States of a character that goes straight ahead; `None` when it falls after it has settled.
 fn walk(model: &Model, pack: &Arc<CharacterPack>, node: usize, blend: Option<Blend>, seed: u64) -> Walk {
-    let graph = pack.graph();
-    let mut subject = Subject::new(model, pack, &graph.nodes()[node].name);
+    let mut subject = Subject::at(model, pack, node);
     let settle = ((SETTLE_SECS + Rng::new(seed, 19).range(0.0, 1.0)) / DT_SECS) as u32;
     let mut states = Vec::new();
     for tick in 0..settle + (TEST_SECS / DT_SECS) as u32 {

@@ -67,8 +67,7 @@ impl MotionReport {
 /// States of a policy that goes straight ahead, after it has settled; empty when it falls.
 #[must_use]
 pub fn watch(model: &Model, pack: &Arc<CharacterPack>, node: usize) -> Vec<CharacterState> {
-    let graph = pack.graph();
-    let mut subject = Subject::new(model, pack, &graph.nodes()[node].name);
+    let mut subject = Subject::at(model, pack, node);
     let mut states = Vec::new();
     for tick in 0..((SETTLE_SECS + WATCHED_SECS) / DT_SECS) as u32 {
         let command = subject.ahead(node);

@@ -3,12 +3,15 @@
 use std::sync::Arc;
 
 use physics_bridge::Model;
-use policy_core::{BlendMode, CharacterPack, Heading};
+use policy_core::{BlendMode, CharacterPack, Goal, Heading, TARGET_RANGE_METRES};
 use rayon::prelude::*;
 
 use super::subject::{SETTLE_SECS, Subject, Wanderer};
 use crate::Rng;
 use crate::env::DT_SECS;
+
+/// Seconds that the way from Walk to a coordinate takes, before speed is measured.
+const TRAVEL_SECS: f32 = 3.0;
 
 /// What one character met.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -40,10 +43,15 @@ fn walk(
     let mut settled = 0.0;
     for _ in 0..((secs + SETTLE_SECS) / DT_SECS) as u32 {
         let before = subject.position();
-        let command = player.command(before);
+        let mut command = player.command(before);
+        if settled < SETTLE_SECS {
+            // Whoever is stood up walks off first, wherever the trigger is.
+            command.target = Some(before + TARGET_RANGE_METRES * player.direction());
+            command.goal = Goal::Path { path, coordinate: 1.0 };
+        }
         let sound = subject.tick(&command);
         settled += DT_SECS;
-        if settled > SETTLE_SECS {
+        if settled > SETTLE_SECS + TRAVEL_SECS {
             along += (subject.position() - before).dot(player.direction());
             ticks += 1;
         }

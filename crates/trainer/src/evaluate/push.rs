@@ -43,8 +43,7 @@ pub fn measure_push(
 }
 
 fn stays_up(model: &Model, pack: &Arc<CharacterPack>, node: usize, force: Vec3, seed: u64) -> bool {
-    let graph = pack.graph();
-    let mut subject = Subject::new(model, pack, &graph.nodes()[node].name);
+    let mut subject = Subject::at(model, pack, node);
     let mut rng = Rng::new(seed, 9);
     let before = ((SETTLE_SECS + rng.range(0.0, 1.0)) / DT_SECS) as u32;
     for tick in 0..before + (3.0 / DT_SECS) as u32 {

@@ -5,8 +5,8 @@ use std::sync::Arc;
 use glam::Vec2;
 use physics_bridge::{Character, Model};
 use policy_core::{
-    BlendMode, Body, CharacterPack, CharacterState, Command, Controller, ControllerConfig, Goal, Heading,
-    TARGET_RANGE_METRES,
+    BlendMode, Body, CharacterPack, CharacterState, Command, Controller, ControllerConfig, Goal,
+    GraphPosition, Heading, TARGET_RANGE_METRES,
 };
 
 use crate::Rng;
@@ -17,6 +17,9 @@ const START_MPS: f32 = 1.0;
 
 /// Seconds of walking before anything is measured.
 pub const SETTLE_SECS: f32 = 2.0;
+
+/// Seconds within which any node of a path is reached.
+const REACH_SECS: f32 = 15.0;
 
 /// A character and its controller.
 #[derive(Debug)]
@@ -41,6 +44,26 @@ impl Subject {
             state: CharacterState::default(),
         };
         subject.reset(Heading::FORWARD);
+        subject
+    }
+
+    /// A character that acts as `node`, straight ahead: one that is on a path and moves is reached from Walk, the second node
+    /// of the path, as in a game; it may have fallen on the way. Any other stands there from the start.
+    #[must_use]
+    pub fn at(model: &Model, pack: &Arc<CharacterPack>, node: usize) -> Self {
+        let graph = pack.graph();
+        let path = graph.paths().iter().find(|p| p.nodes.len() > 1 && p.nodes.contains(&node));
+        let stands = graph.nodes()[node].speed_mps == Some(0.0);
+        let start = path.filter(|_| !stands).map_or(node, |p| p.nodes[1]);
+        let mut subject = Self::new(model, pack, &graph.nodes()[start].name);
+        for _ in 0..(REACH_SECS / DT_SECS) as u32 {
+            let position = subject.controller.report().position;
+            if position == GraphPosition::node(node) {
+                break;
+            }
+            let command = subject.ahead(node);
+            subject.tick(&command);
+        }
         subject
     }
 

@@ -44,7 +44,7 @@ pub fn measure_upright(
 
 fn walk(model: &Model, pack: &Arc<CharacterPack>, node: usize, seed: u64) -> Option<f32> {
     let graph = pack.graph();
-    let mut subject = Subject::new(model, pack, &graph.nodes()[node].name);
+    let mut subject = Subject::at(model, pack, node);
     let stands = graph.nodes()[node].speed_mps == Some(0.0);
     let mut rng = Rng::new(seed, 17);
     let (mut angle, mut along) = (0.0, 0.0);

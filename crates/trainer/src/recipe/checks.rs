@@ -110,6 +110,7 @@ impl Recipe {
             (
                 [
                     env.height,
+                    env.sweep,
                     env.stop,
                     env.stick,
                     env.jump,
@@ -119,18 +120,25 @@ impl Recipe {
                 ]
                 .into_iter()
                 .all(unit),
-                "environment.height, stop, stick, jump and start",
+                "environment.height, sweep, stop, stick, jump and start",
                 "shares in [0, 1]",
-                format!("{}, {}, {}, {} and {:?}", env.height, env.stop, env.stick, env.jump, env.start),
+                format!(
+                    "{}, {}, {}, {}, {} and {:?}",
+                    env.height, env.sweep, env.stop, env.stick, env.jump, env.start
+                ),
             ),
             (
                 ordered(env.edge_sweep_secs)
                     && ordered(env.edge_rest_secs)
-                    && env.edge_sweep_secs[0] > 0.0
+                    && ordered(env.sweep_secs)
+                    && env.edge_sweep_secs[0].min(env.sweep_secs[0]) > 0.0
                     && (0.0..60.0).contains(&env.edge_secs),
-                "environment.edge_sweep_secs, edge_rest_secs and edge_secs",
-                "least and most time above 0, least and most time, and 0 to 60 s",
-                format!("{:?}, {:?} and {}", env.edge_sweep_secs, env.edge_rest_secs, env.edge_secs),
+                "environment.sweep_secs, edge_sweep_secs, edge_rest_secs and edge_secs",
+                "least and most time above 0, twice, least and most time, and 0 to 60 s",
+                format!(
+                    "{:?}, {:?}, {:?} and {}",
+                    env.sweep_secs, env.edge_sweep_secs, env.edge_rest_secs, env.edge_secs
+                ),
             ),
             ((0.0..1.0).contains(&ppo.gamma), "ppo.gamma", "a discount in [0, 1)", ppo.gamma.to_string()),
             ((0.0..1.0).contains(&ppo.average), "ppo.average", "a share in [0, 1)", ppo.average.to_string()),
