@@ -5,7 +5,7 @@ use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-use anyhow::{Context, Result};
+use anyhow::{Context, Result, ensure};
 use clap::Args;
 use physics_bridge::Model;
 use plotters::prelude::*;
@@ -35,9 +35,14 @@ pub(crate) fn run(model: &Model, arguments: &Arguments) -> Result<()> {
     let pack = Arc::new(CharacterPack::from_bytes(&bytes).with_context(|| path.display().to_string())?);
     std::fs::create_dir_all(&arguments.out)?;
     let ticks = (arguments.secs * 30.0) as usize;
-    let nodes = pack.graph().nodes();
+    // What lies on a path: skills that run by switch lie far away and would leave no room for the rest.
+    let graph = pack.graph();
+    let on_a_path = |node: usize| graph.paths().iter().any(|p| p.nodes.contains(&node));
+    let chosen: Vec<usize> = (0..graph.nodes().len()).filter(|node| on_a_path(*node)).collect();
+    ensure!(!chosen.is_empty(), "{}: expected a path, found none", path.display());
+    let nodes: Vec<_> = chosen.iter().map(|node| &graph.nodes()[*node]).collect();
     let visited: Vec<Vec<Vec<f32>>> =
-        (0..nodes.len()).into_par_iter().map(|node| states(model, &pack, node, ticks)).collect();
+        chosen.par_iter().map(|node| states(model, &pack, *node, ticks)).collect();
     let all: Vec<Vec<f32>> = visited.iter().flatten().cloned().collect();
     let states = Components::of(&all, 2);
     let mut csv = String::from("policy,x,y\n");
@@ -49,7 +54,7 @@ pub(crate) fn run(model: &Model, arguments: &Arguments) -> Result<()> {
     }
     write_atomically(&arguments.out.join("states.csv"), csv.as_bytes())?;
 
-    let flat: Vec<Vec<f32>> = pack.policies().iter().map(parameters).collect();
+    let flat: Vec<Vec<f32>> = chosen.iter().map(|node| parameters(&pack.policies()[*node])).collect();
     let components = Components::of(&flat, 2);
     let mut csv = String::from("policy,x,y\n");
     for (node, row) in nodes.iter().zip(&flat) {
@@ -65,7 +70,9 @@ pub(crate) fn run(model: &Model, arguments: &Arguments) -> Result<()> {
     let by_policy: Vec<_> = visited.iter().map(|rows| points(&states, rows)).collect();
     scatter(&arguments.out.join("states.svg"), "visited states", &names, &by_policy, &[])?;
     let by_policy: Vec<_> = flat.iter().map(|row| points(&components, std::slice::from_ref(row))).collect();
-    let edges: Vec<_> = pack.graph().edges().iter().map(|e| e.nodes).collect();
+    let at = |node: usize| chosen.iter().position(|c| *c == node);
+    let edges = graph.edges().iter().filter_map(|e| Some([at(e.nodes[0])?, at(e.nodes[1])?]));
+    let edges: Vec<_> = edges.collect();
     scatter(&arguments.out.join("parameters.svg"), "parameters", &names, &by_policy, &edges)?;
 
     let (mut of_parameters, mut of_states) = (Vec::new(), Vec::new());
@@ -105,7 +112,7 @@ fn scatter(
         .x_label_area_size(30)
         .y_label_area_size(45)
         .build_cartesian_2d(range(0), range(1))?;
-    chart.configure_mesh().x_desc("first component").y_desc("second component").draw()?;
+    chart.configure_mesh().disable_mesh().x_desc("first component").y_desc("second component").draw()?;
     let size = if edges.is_empty() { 2 } else { 6 };
     for edge in edges {
         let ends = edge.iter().filter_map(|node| points[*node].first()).map(|p| (p[0], p[1]));
@@ -118,14 +125,19 @@ fn scatter(
             .label(*name)
             .legend(move |(x, y)| Circle::new((x + 8, y), 5, colour.filled()));
     }
-    chart.configure_series_labels().background_style(WHITE.mix(0.8)).border_style(BLACK.mix(0.3)).draw()?;
+    chart
+        .configure_series_labels()
+        .position(SeriesLabelPosition::UpperLeft)
+        .background_style(WHITE.mix(0.8))
+        .border_style(BLACK.mix(0.3))
+        .draw()?;
     root.present()?;
     Ok(())
 }
 
 /// Normalised observations that a policy visits while it goes straight ahead.
 fn states(model: &Model, pack: &Arc<CharacterPack>, node: usize, ticks: usize) -> Vec<Vec<f32>> {
-    let mut subject = Subject::new(model, pack, &pack.graph().nodes()[node].name);
+    let mut subject = Subject::at(model, pack, node);
     let stands = pack.graph().nodes()[node].speed_mps == Some(0.0);
     let mut rows = Vec::with_capacity(ticks);
     for _ in 0..ticks {
