@@ -111,7 +111,8 @@ impl Workplace {
             }
         }
         let index = |name: &String| names.iter().position(|n| *n == name);
-        let (mut nodes, mut actors, mut judges, mut root) = (Vec::new(), Vec::new(), Vec::new(), None);
+        let (mut nodes, mut actors, mut root) = (Vec::new(), Vec::new(), None);
+        let mut judges: Vec<Judge> = Vec::new();
         for (i, name) in names.iter().enumerate() {
             let skill = self.skill(name, &recipe.skill)?;
             let task = skill.recipe.phases.last().map_or(1.0, |phase| phase.task);
@@ -132,10 +133,11 @@ impl Workplace {
         for ends in &recipe.halfway {
             let edge = ends.each_ref().map(index);
             let edge = course.edges().iter().position(|e| e.map(Some) == edge);
-            halfway.push(edge.with_context(|| {
+            let edge = edge.with_context(|| {
                 format!("expected an edge of the paths in halfway, found {} to {}", ends[0], ends[1])
-            })?);
-            let known = Some(self.skill(&ends[1], &recipe.skill)?.discriminator);
+            })?;
+            halfway.push(edge);
+            let known = judges[course.edges()[edge][1]].discriminator.as_ref().map(|d| d.network.clone());
             let seed = seed.wrapping_add(halfway.len() as u64);
             let learner = DiscriminatorLearner::new(recipe.discriminator.clone(), known, seed, 30);
             judges.push(Judge { demonstrations: self.halfway_clip(ends)?, discriminator: Some(learner) });

@@ -224,13 +224,13 @@ impl Training {
         let width = stage.critic_inputs();
         self.rollout.clear();
         let task_share = self.recipe.phase_at(self.samples).1.task;
+        let guided = self.learner.config.guide > 0.0;
+        self.rollout.guides.resize(if guided { self.rollout.actions.len() } else { 0 }, f32::NAN);
         for step in 0..self.rollout.steps {
             let rows = step * n..(step + 1) * n;
             self.rollout.critic_inputs[rows.start * width..rows.end * width]
                 .copy_from_slice(&self.population.inputs);
             let seen = self.population.inputs.chunks_exact(width).zip(self.population.agents());
-            let guided = self.learner.config.guide > 0.0;
-            self.rollout.guides.resize(if guided { self.rollout.actions.len() } else { 0 }, f32::NAN);
             for (row, (input, agent)) in rows.clone().zip(seen) {
                 if guided {
                     let out = &mut self.rollout.guides[row * DOF_COUNT..(row + 1) * DOF_COUNT];

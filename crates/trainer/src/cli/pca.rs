@@ -9,7 +9,7 @@ use anyhow::{Context, Result, ensure};
 use clap::Args;
 use physics_bridge::Model;
 use plotters::prelude::*;
-use policy_core::{CharacterPack, Command, Goal, Mlp, OBSERVATION_LEN, TARGET_RANGE_METRES};
+use policy_core::{CharacterPack, Mlp, OBSERVATION_LEN};
 use rayon::prelude::*;
 use trainer::checkpoint::write_atomically;
 use trainer::evaluate::Subject;
@@ -138,11 +138,9 @@ fn scatter(
 /// Normalised observations that a policy visits while it goes straight ahead.
 fn states(model: &Model, pack: &Arc<CharacterPack>, node: usize, ticks: usize) -> Vec<Vec<f32>> {
     let mut subject = Subject::at(model, pack, node);
-    let stands = pack.graph().nodes()[node].speed_mps == Some(0.0);
     let mut rows = Vec::with_capacity(ticks);
     for _ in 0..ticks {
-        let ahead = subject.position() + glam::Vec2::new(TARGET_RANGE_METRES, 0.0);
-        let command = Command { target: (!stands).then_some(ahead), goal: Goal::Stay, ..Command::default() };
+        let command = subject.ahead(node);
         subject.tick(&command);
         rows.push(subject.controller.policy_input()[..OBSERVATION_LEN].to_vec());
     }

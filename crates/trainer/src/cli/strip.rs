@@ -10,7 +10,7 @@ use policy_core::{Body, CharacterPack, CharacterState};
 use trainer::checkpoint::write_atomically;
 use trainer::clip::ClipFolder;
 use trainer::env::DT_SECS;
-use trainer::evaluate::{clip_states, pose_error, watch, watch_layers, watch_skill};
+use trainer::evaluate::{STANCE_METRES, clip_states, pose_error, watch, watch_layers, watch_skill};
 use trainer::recipe::Recipe;
 use trainer::strip::{Row, draw};
 
@@ -116,16 +116,13 @@ fn layers(model: &Model, pack: &Arc<CharacterPack>, a: &Arguments) -> Result<()>
         // From a moment at which the right foot comes down, after 4 s.
         let height = |i: usize| states[i].body(Body::RightFoot).position.z;
         let start = (120..states.len().saturating_sub(a.figures * a.stride))
-            .find(|i| height(i - 1) >= LANDING_METRES && height(*i) < LANDING_METRES)
+            .find(|i| height(i - 1) >= STANCE_METRES && height(*i) < STANCE_METRES)
             .unwrap_or(120);
         let states = states[start..].iter().step_by(a.stride.max(1)).take(a.figures).copied().collect();
         rows.push(Row { caption, states, fixed: false });
     }
     write(&a.out, "layers", &rows)
 }
-
-/// Height of the frame of a foot that comes down, metres.
-const LANDING_METRES: f32 = 0.075;
 
 fn write(folder: &Path, name: &str, rows: &[Row]) -> Result<()> {
     let path = folder.join(format!("{name}.svg"));

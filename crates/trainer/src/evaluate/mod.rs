@@ -11,7 +11,7 @@ mod subject;
 mod upright;
 
 pub use layers::{LayerReport, measure_layers, watch_layers};
-pub use motion::{MotionReport, clip_states, pose_error, watch};
+pub use motion::{MotionReport, STANCE_METRES, clip_states, pose_error, watch};
 pub use paths::{measure_coordinates, measure_sweep};
 pub use push::measure_push;
 pub use report::{Evaluation, ModeReport, PathReport, PushReport, SpeedPoint, evaluate};

@@ -12,7 +12,7 @@ use crate::clip::{Clip, TICK_STRIDE};
 use crate::env::{DT_SECS, SourceError, fit};
 
 /// A foot whose frame is lower than this above the ground stands on it, metres; flat on the floor it is at 0.05.
-const STANCE_METRES: f32 = 0.075;
+pub const STANCE_METRES: f32 = 0.075;
 
 /// Seconds that a policy is watched.
 const WATCHED_SECS: f32 = 8.0;
