@@ -151,7 +151,7 @@ impl Controller {
         self.run_skill(state, dt);
         self.watch_falls(state, dt);
         self.request_skill(command.skill);
-        self.travel(command, dt);
+        self.travel(state, command, dt);
         self.choose_blend(command);
         self.observe(state, command);
         true
@@ -229,8 +229,9 @@ impl Controller {
         self.judge.reset();
     }
 
-    /// Moves along the graph: to the nearest node a pending skill may start from, else to the command's goal.
-    fn travel(&mut self, command: &Command, dt: f32) {
+    /// Moves along the graph: to the nearest node a pending skill may start from, else to the command's goal. Out of where
+    /// low is right it goes when the character has risen.
+    fn travel(&mut self, state: &CharacterState, command: &Command, dt: f32) {
         if self.report.skill.is_some() {
             return;
         }
@@ -245,7 +246,12 @@ impl Controller {
             None => command.goal.position(graph),
         };
         self.report.goal = goal.unwrap_or(self.report.position);
-        graph.travel(&mut self.report.position, self.report.goal, dt);
+        let mut next = self.report.position;
+        graph.travel(&mut next, self.report.goal, dt);
+        let limits = [self.report.position, next].map(|position| fall_height(graph, position));
+        if !self.fall.holds_back(limits, pelvis_height(state), dt) {
+            self.report.position = next;
+        }
     }
 
     fn choose_blend(&mut self, command: &Command) {

@@ -16,7 +16,8 @@ pub struct Node {
     /// Unique name, such as `walk`.
     pub name: String,
     /// A pelvis lower than this above the ground, metres, means the character has fallen; `None` where low
-    /// is right, as in a crawl.
+    /// is right, as in a crawl. From there a character comes here once its pelvis is 0.1 m higher than this;
+    /// a rise of more than 3 s counts as a fall.
     pub fall_height: Option<f32>,
     /// Speed this policy was trained for, metres per second, where it has one.
     pub speed_mps: Option<f32>,

@@ -125,6 +125,33 @@ fn low_is_no_fall_where_the_policy_is_low_and_none_without_recovery() {
 }
 
 #[test]
+fn who_leaves_a_crawl_rises_before_the_place_is_left() {
+    let at = |pelvis: f32| {
+        let mut state = standing();
+        state.bodies[0].position.z = pelvis;
+        state
+    };
+    let crouching = Command { goal: Goal::Node(1), ..Command::default() };
+    let mut controller = controller(0.0, "crawl");
+    let mut ticks = |controller: &mut Controller, pelvis: f32, count: u32| {
+        for _ in 0..count {
+            controller.tick(&at(pelvis), &crouching, DT);
+        }
+        (controller.report().position.as_node(), controller.report().fallen, controller.report().skill)
+    };
+    // However long the way back is, the place does not come out of where low is right.
+    let crawl = controller.report().position.as_node();
+    let (node, fallen, _) = ticks(&mut controller, 0.3, 60);
+    assert!(node != Some(1) && !fallen, "{:?}", controller.report().position);
+    let held = controller.report().position;
+    assert!(Some(held.from) == crawl || Some(held.to) == crawl, "{held:?}");
+    // Up it goes on; who never rises gets up as after a fall.
+    let mut risen = controller.clone();
+    assert_eq!(ticks(&mut risen, 0.9, 120).0, Some(1));
+    assert!(ticks(&mut controller, 0.3, 90).2.is_some());
+}
+
+#[test]
 fn a_state_that_is_not_finite_gives_a_safe_action_and_a_flag() {
     let mut controller = controller(0.0, "walk");
     controller.tick(&standing(), &Command::default(), DT);
