@@ -16,6 +16,7 @@ pub mod ppo;
 pub mod recipe;
 mod rng;
 pub mod run;
+mod setting;
 pub mod strip;
 pub mod style;
 pub mod training;

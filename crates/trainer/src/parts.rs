@@ -102,7 +102,7 @@ impl Workplace {
         Ok(Parts { course, learner, judges: Judges::new(judges, Vec::new()), start_demonstrations })
     }
 
-    /// All skills of some paths together, none of them frozen.
+    /// All skills of some paths together.
     fn joint_parts(&self, recipe: &Recipe, seed: u64) -> Result<Parts> {
         let mut names: Vec<&String> = Vec::new();
         for name in recipe.paths.iter().flatten() {
@@ -119,7 +119,8 @@ impl Workplace {
             let pelvis_metres = skill.demonstrations.pelvis_metres();
             let node = CourseNode::new(name, &skill.recipe.environment, 1.0);
             nodes.push(CourseNode { task, pelvis_metres, ..node });
-            actors.push(Actor::learning(skill.actor, skill.recipe.parent.as_ref().and_then(index)));
+            let learning = Actor::learning(skill.actor, skill.recipe.parent.as_ref().and_then(index));
+            actors.push(Actor { frozen: recipe.frozen.contains(name), ..learning });
             let known = Some(skill.discriminator);
             let learner = DiscriminatorLearner::new(recipe.discriminator.clone(), known, seed, 10 + i as u64);
             judges.push(Judge { demonstrations: skill.demonstrations, discriminator: Some(learner) });
@@ -142,12 +143,12 @@ impl Workplace {
             let learner = DiscriminatorLearner::new(recipe.discriminator.clone(), known, seed, 30);
             judges.push(Judge { demonstrations: self.halfway_clip(ends)?, discriminator: Some(learner) });
         }
-        let sizes = critic_sizes(recipe, course.place_len());
+        let sizes = critic_sizes(recipe, course.context_len());
         let mut rng = Rng::new(seed, 1);
         let critic = match root {
             Some(root) if root.sizes() == sizes => root,
             Some(root) if root.inputs() == POLICY_INPUT_LEN + 1 && root.sizes()[1..] == sizes[1..] => {
-                widened(&root, course.place_len())
+                widened(&root, &course)
             }
             _ => Network::new(&sizes, 0.1, &mut rng),
         };
@@ -174,25 +175,26 @@ impl Workplace {
     }
 }
 
-fn critic_sizes(recipe: &Recipe, place_len: usize) -> Vec<usize> {
-    let mut sizes = vec![POLICY_INPUT_LEN + place_len];
+fn critic_sizes(recipe: &Recipe, context_len: usize) -> Vec<usize> {
+    let mut sizes = vec![POLICY_INPUT_LEN + context_len];
     sizes.extend_from_slice(&recipe.ppo.critic_hidden);
     sizes.push(1);
     sizes
 }
 
 /// A critic of one blend weight, which was always 1, as a critic of the weights of many nodes, which sum to 1: every
-/// node's weight does what the one did.
-fn widened(critic: &Network, place_len: usize) -> Network {
+/// node's weight does what the one did, and where the place is going does nothing yet.
+fn widened(critic: &Network, course: &Course) -> Network {
     let mut sizes = critic.sizes().to_vec();
-    sizes[0] = POLICY_INPUT_LEN + place_len;
+    sizes[0] = POLICY_INPUT_LEN + course.context_len();
     let mut wide = Network::zeros(&sizes);
     let (from, to) = (critic.layers(), wide.layers());
     let policy = POLICY_INPUT_LEN * from[0].outputs;
     let old = &critic.parameters[from[0].weight.clone()];
     let new = &mut wide.parameters[to[0].weight.clone()];
     new[..policy].copy_from_slice(&old[..policy]);
-    new[policy..].chunks_exact_mut(from[0].outputs).for_each(|row| row.copy_from_slice(&old[policy..]));
+    let places = new[policy..].chunks_exact_mut(from[0].outputs).take(course.place_len());
+    places.for_each(|row| row.copy_from_slice(&old[policy..]));
     let rest = wide.parameters.len() - to[0].weight.end;
     wide.parameters[to[0].weight.end..].copy_from_slice(&critic.parameters[critic.parameters.len() - rest..]);
     wide
@@ -201,17 +203,20 @@ fn widened(critic: &Network, place_len: usize) -> Network {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::env::EnvironmentConfig;
     use crate::nn::Pass;
 
     #[test]
     fn a_widened_critic_says_what_it_said() {
         let mut rng = Rng::new(1, 0);
         let critic = Network::new(&[POLICY_INPUT_LEN + 1, 8, 1], 1.0, &mut rng);
-        let wide = widened(&critic, 3);
+        let node = |name: &str| CourseNode::new(name, &EnvironmentConfig::default(), 1.0);
+        let course = Course::new(["a", "b", "c"].map(node).to_vec(), vec![vec![0, 1, 2]]);
+        let wide = widened(&critic, &course);
         let mut input: Vec<f32> = (0..POLICY_INPUT_LEN).map(|_| rng.normal()).collect();
         let mut of_wide = input.clone();
         input.push(1.0);
-        of_wide.extend_from_slice(&[0.25, 0.0, 0.75]);
+        of_wide.extend_from_slice(&[0.25, 0.0, 0.75, 1.5, -2.0]);
         let (mut a, mut b) = (Pass::new(critic.sizes(), 1), Pass::new(wide.sizes(), 1));
         a.forward(&critic, None, &input);
         b.forward(&wide, None, &of_wide);

@@ -30,6 +30,9 @@ pub struct Recipe {
     /// Without it the middle is judged by both ends, and stopping and going by turns suits both.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub halfway: Vec<[String; 2]>,
+    /// Skills of those paths whose policies stay as they are; what lies between them and the others still learns.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub frozen: Vec<String>,
     /// Demonstration clips.
     #[serde(default)]
     pub clips: Vec<ClipShare>,
@@ -99,6 +102,12 @@ pub struct Phase {
     /// start for the policy that exploration alone is slow to find. The divergence of updates is not steered meanwhile.
     #[serde(default)]
     pub guide: f32,
+    /// Cost of a failure in this phase, where it is another than `environment.fall_cost`.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub fall_cost: Option<f32>,
+    /// Share of episodes that start before a failure in this phase, where it is another than `environment.start.mishap`.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub mishap: Option<f32>,
     /// Share of episodes that start in other clips in this phase, where it is another than `environment.start.other`.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub other: Option<f32>,
@@ -177,6 +186,8 @@ impl Recipe {
         now.episode_ticks = phase.episode_ticks.unwrap_or(now.episode_ticks);
         now.imitation = phase.imitation.unwrap_or(now.imitation);
         now.start.ragdoll = phase.ragdoll.unwrap_or(now.start.ragdoll);
+        now.fall_cost = phase.fall_cost.unwrap_or(now.fall_cost);
+        now.start.mishap = phase.mishap.unwrap_or(now.start.mishap);
         now.start.other = phase.other.unwrap_or(now.start.other);
         now
     }

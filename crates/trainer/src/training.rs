@@ -4,12 +4,11 @@ use physics_bridge::{Model, ModelError, Terrain};
 use policy_core::{ActionScaling, DISCRIMINATOR_INPUT_LEN, DOF_COUNT, POLICY_INPUT_LEN};
 
 use crate::amp::DiscriminatorReport;
-use crate::env::{
-    Course, Demonstrations, EnvironmentConfig, Normalisers, Place, Population, PopulationReport, Stage,
-};
+use crate::env::{Course, Demonstrations, Normalisers, Place, Population, PopulationReport};
 use crate::nn::{Adam, Network};
-use crate::ppo::{Learner, Rollout, UpdateReport};
+use crate::ppo::{Done, Learner, Rollout, UpdateReport};
 use crate::recipe::Recipe;
+use crate::setting::Setting;
 use crate::style::Judges;
 
 /// Hidden sizes of every policy.
@@ -45,14 +44,10 @@ pub struct Training {
     pub judges: Judges,
     /// Samples so far.
     pub samples: u64,
-    course: Course,
-    start_demonstrations: Option<Demonstrations>,
-    /// The recipe's, as the phase that is on has it.
-    environment: EnvironmentConfig,
+    setting: Setting,
     population: Population,
     rollout: Rollout,
     judged: Vec<f32>,
-    normalisers: Normalisers,
     model: Model,
     scaling: ActionScaling,
     terrain_metres: f32,
@@ -89,26 +84,18 @@ impl Training {
         let scaling = ActionScaling::from_joint_limits(low, high).expect("a loaded model has finite limits");
         let demonstrations = judges.demonstrations();
         let environment = recipe.environment_at(0);
-        let stage = Stage {
-            config: &environment,
-            course: &course,
-            demonstrations: &demonstrations,
-            start_demonstrations: start_demonstrations.as_ref(),
-            normalisers: &normalisers,
-        };
+        let setting = Setting { environment, course, start_demonstrations, normalisers };
+        let stage = setting.stage(&demonstrations);
         let population = Population::new(std::slice::from_ref(model), &scaling, &stage, seed);
         Self {
             rollout: Rollout::new(shape, (POLICY_INPUT_LEN, stage.critic_inputs()), DOF_COUNT),
             judged: vec![0.0; shape.0 * shape.1 * DISCRIMINATOR_INPUT_LEN],
             samples: 0,
-            environment,
             recipe,
             learner,
             judges,
             population,
-            course,
-            start_demonstrations,
-            normalisers,
+            setting,
             model: model.clone(),
             scaling,
             terrain_metres: 0.0,
@@ -120,11 +107,11 @@ impl Training {
     /// with a dot.
     pub fn networks_mut(&mut self) -> Vec<(String, &mut Network, Option<&mut Adam>)> {
         let together = !self.recipe.paths.is_empty();
-        let last = self.course.nodes().len() - 1;
+        let last = self.setting.course.nodes().len() - 1;
         let mut all = Vec::new();
         let halfway = self.judges.halfway().to_vec();
         let (judges, between) = self.judges.judges.split_at_mut(last + 1);
-        let nodes = self.course.nodes().iter().zip(self.learner.actors.iter_mut().zip(judges));
+        let nodes = self.setting.course.nodes().iter().zip(self.learner.actors.iter_mut().zip(judges));
         for (i, (node, (actor, judge))) in nodes.enumerate() {
             let role = |what: &str| if together { format!("{}.{what}", node.name) } else { what.to_owned() };
             if together || i == last {
@@ -137,7 +124,8 @@ impl Training {
             }
         }
         for (edge, judge) in halfway.iter().zip(between) {
-            let [from, to] = self.course.edges()[*edge].map(|node| &self.course.nodes()[node].name);
+            let [from, to] =
+                self.setting.course.edges()[*edge].map(|node| &self.setting.course.nodes()[node].name);
             if let Some(d) = &mut judge.discriminator {
                 all.push((format!("{from}-{to}.discriminator"), &mut d.network, Some(&mut d.adam)));
             }
@@ -149,7 +137,7 @@ impl Training {
     /// What characters move along.
     #[must_use]
     pub fn course(&self) -> &Course {
-        &self.course
+        &self.setting.course
     }
 
     /// Puts the characters on the ground of the phase that is on, when it has changed.
@@ -165,13 +153,7 @@ impl Training {
             grounds.push(self.model.with_terrain(terrain)?);
         }
         let demonstrations = self.judges.demonstrations();
-        let stage = Stage {
-            config: &self.environment,
-            course: &self.course,
-            demonstrations: &demonstrations,
-            start_demonstrations: self.start_demonstrations.as_ref(),
-            normalisers: &self.normalisers,
-        };
+        let stage = self.setting.stage(&demonstrations);
         self.population = Population::new(&grounds, &self.scaling, &stage, self.samples);
         Ok(())
     }
@@ -185,7 +167,7 @@ impl Training {
         let phase = self.recipe.phase_at(self.samples).1;
         self.learner.config.deviation = phase.deviation.unwrap_or(self.recipe.ppo.deviation);
         self.learner.config.guide = phase.guide;
-        self.environment = self.recipe.environment_at(self.samples);
+        self.setting.environment = self.recipe.environment_at(self.samples);
         let start = std::time::Instant::now();
         self.roll_out();
         let rolled = start.elapsed();
@@ -214,13 +196,7 @@ impl Training {
     fn roll_out(&mut self) {
         let n = self.rollout.characters;
         let demonstrations = self.judges.demonstrations();
-        let stage = Stage {
-            config: &self.environment,
-            course: &self.course,
-            demonstrations: &demonstrations,
-            start_demonstrations: self.start_demonstrations.as_ref(),
-            normalisers: &self.normalisers,
-        };
+        let stage = self.setting.stage(&demonstrations);
         let width = stage.critic_inputs();
         self.rollout.clear();
         let task_share = self.recipe.phase_at(self.samples).1.task;
@@ -249,9 +225,10 @@ impl Training {
             self.rollout.record(step, self.population.ends(), &self.population.inputs_after);
             let at = self.rollout.edge[rows.clone()].iter().zip(&self.rollout.blend[rows.clone()]);
             let rewards = self.rollout.rewards[rows].iter_mut().zip(self.population.terms());
-            for ((reward, terms), (edge, t)) in rewards.zip(at) {
-                let share = task_share * self.course.task(Place { edge: *edge, t: *t });
-                *reward = share * terms.task + self.environment.imitation * terms.imitation;
+            for (((reward, terms), end), (edge, t)) in rewards.zip(self.population.ends()).zip(at) {
+                let share = task_share * self.setting.course.task(Place { edge: *edge, t: *t });
+                let cost = if *end == Done::Failed { self.setting.environment.fall_cost } else { 0.0 };
+                *reward = share * terms.task + self.setting.environment.imitation * terms.imitation - cost;
             }
         }
         self.rollout.last_critic_inputs.copy_from_slice(&self.population.inputs);
@@ -261,13 +238,13 @@ impl Training {
     fn judge(&mut self) -> (f32, DiscriminatorReport) {
         let task_share = self.recipe.phase_at(self.samples).1.task;
         let places = (&self.rollout.edge[..], &self.rollout.blend[..]);
-        let style = self.judges.style(&self.course, places, &self.judged);
+        let style = self.judges.style(&self.setting.course, places, &self.judged);
         let at = places.0.iter().zip(places.1).map(|(edge, t)| Place { edge: *edge, t: *t });
         for ((reward, style), place) in self.rollout.rewards.iter_mut().zip(style).zip(at) {
-            let share = task_share * self.course.task(place);
-            *reward += (1.0 - share - self.environment.imitation) * style;
+            let share = task_share * self.setting.course.task(place);
+            *reward += (1.0 - share - self.setting.environment.imitation) * style;
         }
         let mean = style.iter().sum::<f32>() / style.len() as f32;
-        (mean, self.judges.learn(&self.course, places, &self.judged))
+        (mean, self.judges.learn(&self.setting.course, places, &self.judged))
     }
 }

@@ -7,15 +7,18 @@ use policy_core::{
     JointTargets, OBSERVATION_LEN, POLICY_INPUT_LEN, discriminator_frame_into, observe_into, target_input,
 };
 
+use self::mishap::Mishaps;
 use super::command::{Command, DT_SECS};
 use super::config::{EnvironmentConfig, Task};
 use super::demonstrations::{Demonstrations, Moment};
+use super::fallen::fallen;
 use super::imitation::Likeness;
 use super::population::Stage;
 use super::reward::{RewardTerms, standing_reward, target_reward};
 use crate::Rng;
 use crate::ppo::Done;
 
+mod mishap;
 mod start;
 
 /// What a finished episode was.
@@ -43,6 +46,7 @@ pub struct Agent {
     place: (f64, f64),
     /// What it is to imitate next, and for how many ticks it may be far from it.
     imitated: Option<(Moment, u32)>,
+    mishaps: Mishaps,
 }
 
 impl Agent {
@@ -59,12 +63,21 @@ impl Agent {
             born_at: 0,
             place: (0.0, 0.0),
             imitated: None,
+            mishaps: Mishaps::default(),
         }
     }
 
     /// Starts an episode; the first one anywhere in its time, later ones up to a quarter of it short.
     pub fn reset(&mut self, stage: &Stage<'_>, first: bool) {
         let config = stage.config;
+        // Random ages at the start, or a population without falls would end its episodes as one.
+        let ticks = config.episode_ticks as usize;
+        self.born_at = self.rng.index(if first { ticks } else { ticks.div_ceil(4) }) as u32;
+        self.age = self.born_at;
+        self.mishaps.begin();
+        if self.rng.chance(config.start.mishap) && self.start_before_failure(stage) {
+            return;
+        }
         self.choose_place();
         self.command = Command::start(config, stage.course, &mut self.rng);
         let limp = self.rng.chance(config.start.ragdoll);
@@ -84,10 +97,6 @@ impl Agent {
         if limp || config.imitation == 0.0 {
             self.imitated = None;
         }
-        // Random ages at the start, or a population without falls would end its episodes as one.
-        let ticks = config.episode_ticks as usize;
-        self.born_at = self.rng.index(if first { ticks } else { ticks.div_ceil(4) }) as u32;
-        self.age = self.born_at;
     }
 
     /// Writes the action that would follow the imitated clip from here; NaN when there is none.
@@ -168,12 +177,25 @@ impl Agent {
         let speed = stage.course.speed_mps(self.command.place);
         let height = (config.height, stage.course.pelvis_metres(self.command.place));
         let terms = match config.task {
-            Task::Target => target_reward(&self.state, velocity, self.command.target, speed)
-                .with_height(&self.state, height),
+            Task::Target => {
+                target_reward(&self.state, velocity, self.command.target, (speed, config.least_width_mps))
+                    .with_height(&self.state, height)
+            }
             Task::Stand => standing_reward(&self.state),
         };
         if diverged || !self.state.is_finite() || self.has_fallen(stage) {
+            if !diverged && self.state.is_finite() {
+                self.mishaps.failed(&mut self.rng);
+            }
             return (terms, Done::Failed);
+        }
+        if self.command.stuck() {
+            // Not a fall: who fears the way up so much does not go down either.
+            self.mishaps.failed(&mut self.rng);
+            return (terms, Done::TimedOut);
+        }
+        if config.start.mishap > 0.0 && self.mishaps.tick() {
+            self.mishaps.keep(&self.character, &self.history, self.command);
         }
         let (imitation, lost) = self.imitate(stage);
         let old = self.age >= config.episode_ticks;
@@ -183,7 +205,8 @@ impl Agent {
     /// Renews target and place on the course, after the tick's reward.
     pub fn advance_command(&mut self, stage: &Stage<'_>) {
         let position = self.position();
-        self.command.advance(stage.config, stage.course, position, &mut self.rng);
+        let low = |factor: f32| fallen(&self.state, factor);
+        self.command.advance(stage.config, stage.course, position, low, &mut self.rng);
     }
 
     /// Length of the episode so far and whether it failed.
@@ -218,24 +241,3 @@ const START_TRIES: usize = 4;
 
 /// Length of a push, seconds.
 pub const PUSH_SECS: f32 = 0.2;
-
-/// Least heights of an upright body above the ground, metres: body frames, not lowest points.
-const LEAST_HEIGHTS: [(Body, f32); 9] = [
-    (Body::Pelvis, 0.45),
-    (Body::Torso, 0.6),
-    (Body::Head, 0.75),
-    (Body::RightHand, 0.15),
-    (Body::LeftHand, 0.15),
-    (Body::RightLowerArm, 0.3),
-    (Body::LeftLowerArm, 0.3),
-    (Body::RightThigh, 0.4),
-    (Body::LeftThigh, 0.4),
-];
-
-/// True when a body that should be up has come low; `factor` scales the heights.
-#[must_use]
-pub fn fallen(state: &CharacterState, factor: f32) -> bool {
-    LEAST_HEIGHTS
-        .iter()
-        .any(|(body, height)| state.body(*body).position.z - state.ground_height < height * factor)
-}

@@ -38,6 +38,9 @@ pub struct Start {
     pub anywhere: f32,
     /// Share of episodes that start limp on the ground, dropped there in a random attitude.
     pub ragdoll: f32,
+    /// Share of episodes that start some second before an earlier failure of the same character, with the command it had
+    /// then: what goes wrong once in a minute is met often.
+    pub mishap: f32,
 }
 
 /// Settings of the environment.
@@ -52,6 +55,9 @@ pub struct EnvironmentConfig {
     pub episode_ticks: u32,
     /// Speed that the skill is commanded to, metres per second.
     pub speed_mps: f32,
+    /// Least error of the speed that the task reward takes for a large one, metres per second. A slow gait needs a small one, or
+    /// to stand still is almost as good.
+    pub least_width_mps: f32,
     /// What the task reward asks for.
     pub task: Task,
     /// Share of the task reward that is for the height of the pelvis: that of the clips at the place on the course, of skills
@@ -64,6 +70,9 @@ pub struct EnvironmentConfig {
     pub fall: Fall,
     /// Factor on the heights of the fall rule; less than 1 for low gaits.
     pub fall_height: f32,
+    /// What a failure takes off the reward of its tick. What failing forgoes, some twenty to a hundred ticks of reward, weighs
+    /// little beside style once falls are a minute apart.
+    pub fall_cost: f32,
     /// Distance of new targets, metres, least and most.
     pub target_metres: [f32; 2],
     /// Seconds until a target is renewed, least and most.
@@ -100,11 +109,13 @@ impl Default for EnvironmentConfig {
             steps: 16,
             episode_ticks: 300,
             speed_mps: 1.25,
+            least_width_mps: 0.6,
             task: Task::Target,
             height: 0.0,
             imitation: 0.0,
             fall: Fall::Upright,
             fall_height: 1.0,
+            fall_cost: 0.0,
             target_metres: [1.0, 10.0],
             target_secs: [2.0, 7.0],
             stop: 0.15,

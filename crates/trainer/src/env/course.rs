@@ -1,6 +1,7 @@
 //! What a population moves along: nodes, each with a policy of its own, and paths through them. A place on a course is
 //! an edge and a blend weight, as in the graph of a pack.
 
+use super::command::INTENT_LEN;
 use super::config::{EnvironmentConfig, Fall};
 use crate::Rng;
 
@@ -194,6 +195,12 @@ impl Course {
     #[must_use]
     pub fn place_len(&self) -> usize {
         if self.nodes.len() <= 2 { 1 } else { self.nodes.len() }
+    }
+
+    /// Numbers that a critic sees beside the policy's input: the place and, on one of several edges, where it is going.
+    #[must_use]
+    pub fn context_len(&self) -> usize {
+        self.place_len() + if self.edges.len() > 1 { INTENT_LEN } else { 0 }
     }
 
     /// Writes the numbers of [`Course::place_len`].

@@ -30,10 +30,10 @@ pub struct Stage<'a> {
 }
 
 impl Stage<'_> {
-    /// Inputs of the critic: the policy's and the place on the course.
+    /// Inputs of the critic: the policy's and [`Course::context_len`] more.
     #[must_use]
     pub fn critic_inputs(&self) -> usize {
-        POLICY_INPUT_LEN + self.course.place_len()
+        POLICY_INPUT_LEN + self.course.context_len()
     }
 }
 
@@ -199,7 +199,9 @@ impl Population {
 }
 
 fn write_input(agent: &Agent, stage: &Stage<'_>, row: &mut [f32]) {
-    let (input, place) = row.split_at_mut(POLICY_INPUT_LEN);
+    let (input, rest) = row.split_at_mut(POLICY_INPUT_LEN);
+    let (place, intent) = rest.split_at_mut(stage.course.place_len());
     agent.input_into(stage, input);
     stage.course.place_into(agent.command.place, place);
+    agent.command.intent_into(intent);
 }

@@ -32,10 +32,16 @@ const BRAKING_METRES: f32 = 1.0;
 /// Reward for going to `target` at `speed_mps` and facing it. `velocity` is that of the pelvis over the tick.
 ///
 /// `0.4 exp(-2 d) + 0.3 exp(-2 d / 9) + 0.3 facing` with `d = (e^2 + 0.25 s^2) / w^2`, speed error `e`, sideways speed `s`
-/// and a width `w` that grows with the commanded speed. The narrow bell makes the speed exact; the wide one gives a walk
-/// that is asked to run, or to stand, a slope to go down.
+/// and a width `w` that grows with the commanded speed from `least_width` on, metres per second. The narrow bell makes the speed exact; the wide one gives a walk
+/// that is asked to run, or to stand, a slope to go down. Facing falls evenly from 1 to 0 straight behind, so that who goes
+/// the wrong way altogether gains by every degree too.
 #[must_use]
-pub fn target_reward(state: &CharacterState, velocity: Vec2, target: Vec2, speed_mps: f32) -> RewardTerms {
+pub fn target_reward(
+    state: &CharacterState,
+    velocity: Vec2,
+    target: Vec2,
+    (speed_mps, least_width): (f32, f32),
+) -> RewardTerms {
     let pelvis = state.body(Body::Pelvis);
     let to_target = target - pelvis.position.truncate();
     let distance = to_target.length();
@@ -45,10 +51,11 @@ pub fn target_reward(state: &CharacterState, velocity: Vec2, target: Vec2, speed
     let commanded_mps = speed_mps * near;
     let along = velocity.dot(direction);
     let sideways = velocity.perp_dot(direction);
-    let width = (commanded_mps / 1.25).sqrt().max(0.6);
+    let width = (commanded_mps / 1.25).sqrt().max(least_width);
     let error = ((along - commanded_mps).powi(2) + 0.25 * sideways * sideways) / (width * width);
     // Close by, which way the target lies says nothing.
-    let facing = (1.0 - near) + near * facing_now.dot(direction).max(0.0);
+    let aside = facing_now.angle_to(direction).abs() / std::f32::consts::PI;
+    let facing = 1.0 - near * aside;
     let speed = 0.4 * (-2.0 * error).exp() + 0.3 * (-2.0 * error / 9.0).exp();
     RewardTerms { task: speed + 0.3 * facing, speed_mps: along, commanded_mps, ..RewardTerms::default() }
 }
@@ -81,19 +88,34 @@ mod tests {
     #[test]
     fn the_right_speed_towards_the_target_is_worth_one() {
         let state = CharacterState::default();
-        let terms = target_reward(&state, Vec2::new(1.25, 0.0), Vec2::new(5.0, 0.0), 1.25);
+        let terms = target_reward(&state, Vec2::new(1.25, 0.0), Vec2::new(5.0, 0.0), (1.25, 0.6));
         assert!((terms.task - 1.0).abs() < 1e-6);
-        let away = target_reward(&state, Vec2::new(-1.25, 0.0), Vec2::new(5.0, 0.0), 1.25);
+        let away = target_reward(&state, Vec2::new(-1.25, 0.0), Vec2::new(5.0, 0.0), (1.25, 0.6));
         assert!(away.task < 0.5);
     }
 
     #[test]
     fn a_walk_asked_to_run_or_to_stand_feels_a_slope() {
         let state = CharacterState::default();
-        let at = |speed: f32| target_reward(&state, Vec2::new(speed, 0.0), Vec2::new(5.0, 0.0), 3.5).task;
+        let at =
+            |speed: f32| target_reward(&state, Vec2::new(speed, 0.0), Vec2::new(5.0, 0.0), (3.5, 0.6)).task;
         assert!(at(1.5) - at(1.3) > 0.02, "{} {}", at(1.5), at(1.3));
-        let at = |speed: f32| target_reward(&state, Vec2::new(speed, 0.0), Vec2::new(5.0, 0.0), 0.0).task;
+        let at =
+            |speed: f32| target_reward(&state, Vec2::new(speed, 0.0), Vec2::new(5.0, 0.0), (0.0, 0.6)).task;
         assert!(at(1.2) - at(1.4) > 0.02, "{} {}", at(1.2), at(1.4));
+    }
+
+    #[test]
+    fn every_degree_towards_the_target_pays() {
+        let state = CharacterState::default();
+        let at = |degrees: f32| {
+            let target = 5.0 * Vec2::from_angle(degrees.to_radians());
+            target_reward(&state, Vec2::ZERO, target, (0.3, 0.6)).task
+        };
+        for degrees in (0..180).step_by(10).map(|d| d as f32) {
+            assert!(at(degrees) - at(degrees + 10.0) > 0.01, "{degrees}");
+            assert!((at(degrees) - at(-degrees)).abs() < 1e-6);
+        }
     }
 
     #[test]
@@ -111,8 +133,8 @@ mod tests {
     #[test]
     fn at_the_target_standing_is_best_whatever_the_heading() {
         let state = CharacterState::default();
-        let still = target_reward(&state, Vec2::ZERO, Vec2::ZERO, 1.25);
+        let still = target_reward(&state, Vec2::ZERO, Vec2::ZERO, (1.25, 0.6));
         assert!((still.task - 1.0).abs() < 1e-6);
-        assert!(target_reward(&state, Vec2::X, Vec2::ZERO, 1.25).task < 0.7);
+        assert!(target_reward(&state, Vec2::X, Vec2::ZERO, (1.25, 0.6)).task < 0.7);
     }
 }

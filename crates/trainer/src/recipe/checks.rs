@@ -30,6 +30,12 @@ impl Recipe {
                 self.parent.clone().unwrap_or_default(),
             ),
             (
+                self.frozen.iter().all(|name| self.paths.iter().flatten().any(|n| n == name)),
+                "frozen",
+                "skills of the paths",
+                format!("{:?}", self.frozen),
+            ),
+            (
                 self.paths.iter().all(|p| p.len() > 1),
                 "paths",
                 "at least two skills in each",
@@ -94,6 +100,30 @@ impl Recipe {
                 "at least 1",
                 "0".into(),
             ),
+            (
+                self.phases.iter().all(|p| {
+                    let cost = p.fall_cost.unwrap_or(env.fall_cost);
+                    cost.is_finite() && cost >= 0.0
+                }),
+                "fall_cost",
+                "rewards of at least 0",
+                format!("{} and {:?}", env.fall_cost, self.phases),
+            ),
+            (
+                self.phases.iter().all(|p| {
+                    let imitates = p.imitation.unwrap_or(env.imitation) > 0.0;
+                    !imitates || p.mishap.unwrap_or(env.start.mishap) == 0.0
+                }),
+                "mishap",
+                "none beside imitation: what was to be imitated is forgotten",
+                env.start.mishap.to_string(),
+            ),
+            (
+                positive(env.least_width_mps),
+                "environment.least_width_mps",
+                "a positive speed",
+                env.least_width_mps.to_string(),
+            ),
             (env.speed_mps.is_finite(), "environment.speed_mps", "a finite speed", env.speed_mps.to_string()),
             (
                 ordered(env.target_metres),
@@ -117,6 +147,7 @@ impl Recipe {
                     env.start.other,
                     env.start.anywhere,
                     env.start.ragdoll,
+                    env.start.mishap,
                 ]
                 .into_iter()
                 .all(unit),
@@ -146,9 +177,10 @@ impl Recipe {
             (positive(ppo.deviation), "ppo.deviation", "a positive deviation", ppo.deviation.to_string()),
             (
                 self.phases.iter().all(|p| {
-                    p.deviation.is_none_or(positive) && p.ragdoll.is_none_or(unit) && p.other.is_none_or(unit)
+                    let shares = [p.ragdoll, p.other, p.mishap];
+                    p.deviation.is_none_or(positive) && shares.into_iter().flatten().all(unit)
                 }),
-                "phases.deviation, ragdoll and other",
+                "phases.deviation, ragdoll, other and mishap",
                 "a positive deviation and shares in [0, 1]",
                 format!("{:?}", self.phases),
             ),

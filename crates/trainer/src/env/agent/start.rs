@@ -11,6 +11,9 @@ use crate::clip::placed;
 /// Characters on a terrain start this near to its middle, metres along each axis.
 const TERRAIN_HALF_METRES: f32 = 25.0;
 
+/// Ticks of an episode that starts before a failure, at most: what it is about comes first.
+const MISHAP_TICKS: u32 = 120;
+
 /// Ticks for which a character that starts in another clip may be far from the one it is to imitate.
 const FREE_TICKS: u32 = 20;
 
@@ -22,6 +25,17 @@ impl Agent {
             let mut along = || half * f64::from(self.rng.range(-1.0, 1.0));
             self.place = (along(), along());
         }
+    }
+
+    /// Goes back to a moment before an earlier failure; false when there is none.
+    pub(super) fn start_before_failure(&mut self, stage: &Stage<'_>) -> bool {
+        let Some(past) = self.mishaps.take(&mut self.rng) else { return false };
+        self.character.restore(&past.snapshot).expect("a snapshot of the same character");
+        self.character.sense_into(&mut self.state);
+        (self.history, self.command, self.imitated) = (past.history, past.command, None);
+        self.born_at = self.born_at.max(stage.config.episode_ticks.saturating_sub(MISHAP_TICKS));
+        self.age = self.born_at;
+        true
     }
 
     /// A start state out of other clips, those of any node, those around the place on the course, or the last node's.
