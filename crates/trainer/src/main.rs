@@ -58,6 +58,8 @@ enum Verb {
 }
 
 fn main() -> Result<()> {
+    // Whoever reads no further, as `head`, ends the program without a word.
+    sigpipe::reset();
     let arguments = Arguments::parse();
     match &arguments.verb {
         Verb::Train(train) => cli::train::run(&arguments.workplace()?, train),

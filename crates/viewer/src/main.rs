@@ -7,6 +7,8 @@ use viewer::cli::open::open;
 use viewer::cli::{Cli, Task, bench, headless};
 
 fn main() -> ExitCode {
+    // Whoever reads no further, as `head`, ends the program without a word.
+    sigpipe::reset();
     match run(&Cli::parse()) {
         Ok(()) => ExitCode::SUCCESS,
         Err(error) => {

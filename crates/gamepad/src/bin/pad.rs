@@ -57,6 +57,8 @@ struct DoctorArgs {
 }
 
 fn main() -> Result<ExitCode> {
+    // Whoever reads no further, as `head`, ends the program without a word.
+    sigpipe::reset();
     match Cli::parse().verb {
         Verb::Doctor(DoctorArgs { seconds }) => run_doctor(seconds),
         Verb::Udev => {
