@@ -40,7 +40,8 @@ impl FallDetector {
         pelvis_height: f32,
         dt_secs: f32,
     ) -> bool {
-        let holds = from.is_none() && to.is_some_and(|limit| pelvis_height < limit + RISEN_METRES);
+        let holds =
+            to.is_some_and(|to| from.is_none_or(|from| from < to) && pelvis_height < to + RISEN_METRES);
         self.rising_seconds = if holds { self.rising_seconds + dt_secs } else { 0.0 };
         holds
     }

@@ -15,9 +15,9 @@ pub const MAX_NODES: usize = 64;
 pub struct Node {
     /// Unique name, such as `walk`.
     pub name: String,
-    /// A pelvis lower than this above the ground, metres, means the character has fallen; `None` where low
-    /// is right, as in a crawl. From there a character comes here once its pelvis is 0.1 m higher than this;
-    /// a rise of more than 3 s counts as a fall.
+    /// A pelvis lower than this above the ground, metres, means the character has fallen; `None` where nothing
+    /// does. From where it is less, as in a crawl, a character comes here once its pelvis is 0.1 m higher than
+    /// this; a rise of more than 3 s counts as a fall.
     pub fall_height: Option<f32>,
     /// Speed this policy was trained for, metres per second, where it has one.
     pub speed_mps: Option<f32>,

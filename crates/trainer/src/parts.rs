@@ -102,7 +102,7 @@ impl Workplace {
         Ok(Parts { course, learner, judges: Judges::new(judges, Vec::new()), start_demonstrations })
     }
 
-    /// All skills of some paths together.
+    /// All skills of some paths together, none of them frozen.
     fn joint_parts(&self, recipe: &Recipe, seed: u64) -> Result<Parts> {
         let mut names: Vec<&String> = Vec::new();
         for name in recipe.paths.iter().flatten() {
@@ -119,8 +119,7 @@ impl Workplace {
             let pelvis_metres = skill.demonstrations.pelvis_metres();
             let node = CourseNode::new(name, &skill.recipe.environment, 1.0);
             nodes.push(CourseNode { task, pelvis_metres, ..node });
-            let learning = Actor::learning(skill.actor, skill.recipe.parent.as_ref().and_then(index));
-            actors.push(Actor { frozen: recipe.frozen.contains(name), ..learning });
+            actors.push(Actor::learning(skill.actor, skill.recipe.parent.as_ref().and_then(index)));
             let known = Some(skill.discriminator);
             let learner = DiscriminatorLearner::new(recipe.discriminator.clone(), known, seed, 10 + i as u64);
             judges.push(Judge { demonstrations: skill.demonstrations, discriminator: Some(learner) });

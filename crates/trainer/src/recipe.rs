@@ -30,9 +30,6 @@ pub struct Recipe {
     /// Without it the middle is judged by both ends, and stopping and going by turns suits both.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub halfway: Vec<[String; 2]>,
-    /// Skills of those paths whose policies stay as they are; what lies between them and the others still learns.
-    #[serde(default, skip_serializing_if = "Vec::is_empty")]
-    pub frozen: Vec<String>,
     /// Demonstration clips.
     #[serde(default)]
     pub clips: Vec<ClipShare>,

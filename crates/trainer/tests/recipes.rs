@@ -190,7 +190,6 @@ fn unknown_fields_and_senseless_values_are_named() {
     assert!(parse(&good.replace("0.5", "0.5\nfall_cost = -1.0")).contains("fall_cost"));
     assert!(parse(&good.replace("0.5", "0.5\nmishap = 1.5")).contains("mishap"));
     assert!(parse(&good.replace("0.5", "0.5\nmishap = 0.5\nimitation = 0.5")).contains("mishap"));
-    assert!(parse(&together.replace("[[phases]]", "frozen = [\"c\"]\n[[phases]]")).contains("frozen"));
     assert!(parse(&format!("{good}[environment]\nleast_width_mps = 0.0\n")).contains("least_width_mps"));
     assert!(parse(&good.replace("\"a\"", "\"../a\"")).contains("skill"));
     assert!(parse(&good.replace("skill = \"a\"", "skill = \"a\"\nedge = true")).contains("edge"));

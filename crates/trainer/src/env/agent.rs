@@ -11,7 +11,7 @@ use self::mishap::Mishaps;
 use super::command::{Command, DT_SECS};
 use super::config::{EnvironmentConfig, Task};
 use super::demonstrations::{Demonstrations, Moment};
-use super::fallen::fallen;
+use super::fallen::FallRule;
 use super::imitation::Likeness;
 use super::population::Stage;
 use super::reward::{RewardTerms, standing_reward, target_reward};
@@ -174,13 +174,12 @@ impl Agent {
         self.history.input_into(discriminator_input);
         self.age += 1;
         let velocity = (self.position() - before) / DT_SECS;
-        let speed = stage.course.speed_mps(self.command.place);
-        let height = (config.height, stage.course.pelvis_metres(self.command.place));
+        let place = self.command.place;
+        let speed = (stage.course.speed_mps(place), stage.course.least_width_mps(place));
+        let height = (config.height, stage.course.pelvis_metres(place));
         let terms = match config.task {
-            Task::Target => {
-                target_reward(&self.state, velocity, self.command.target, (speed, config.least_width_mps))
-                    .with_height(&self.state, height)
-            }
+            Task::Target => target_reward(&self.state, velocity, self.command.target, speed)
+                .with_height(&self.state, height),
             Task::Stand => standing_reward(&self.state),
         };
         if diverged || !self.state.is_finite() || self.has_fallen(stage) {
@@ -205,7 +204,7 @@ impl Agent {
     /// Renews target and place on the course, after the tick's reward.
     pub fn advance_command(&mut self, stage: &Stage<'_>) {
         let position = self.position();
-        let low = |factor: f32| fallen(&self.state, factor);
+        let low = |rule: FallRule| rule.is_broken_by(&self.state);
         self.command.advance(stage.config, stage.course, position, low, &mut self.rng);
     }
 
@@ -226,8 +225,7 @@ impl Agent {
     }
 
     fn has_fallen(&self, stage: &Stage<'_>) -> bool {
-        let factor = stage.course.fall_height(self.command.place);
-        factor > 0.0 && fallen(&self.state, factor)
+        stage.course.fall(self.command.place).is_broken_by(&self.state)
     }
 }
 

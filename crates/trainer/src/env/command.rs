@@ -5,6 +5,7 @@ use policy_core::TARGET_RANGE_METRES;
 
 use super::config::EnvironmentConfig;
 use super::course::{Course, Place};
+use super::fallen::FallRule;
 use crate::Rng;
 
 /// Seconds of a control tick.
@@ -93,13 +94,13 @@ impl Command {
     }
 
     /// Moves the command on by a tick. As in a game, the coordinate goes from where low is right to where it is not once the
-    /// character has risen: once `low`, for the factor on the heights of the fall rule there, is false.
+    /// character has risen: once `low`, for the fall rule there, is false.
     pub fn advance(
         &mut self,
         config: &EnvironmentConfig,
         course: &Course,
         position: Vec2,
-        low: impl FnOnce(f32) -> bool,
+        low: impl FnOnce(FallRule) -> bool,
         rng: &mut Rng,
     ) {
         self.target_ticks = self.target_ticks.saturating_sub(1);
@@ -125,8 +126,8 @@ impl Command {
         let most = if secs > 0.0 { DT_SECS / secs } else { f32::INFINITY };
         let coordinate = self.coordinate + (self.asked - self.coordinate).clamp(-most, most);
         let place = course.place(self.path, coordinate);
-        let [from, to] = [self.place, place].map(|place| course.fall_height(place));
-        if from == 0.0 && to > 0.0 && low(to) {
+        let [from, to] = [self.place, place].map(|place| course.fall(place));
+        if from.rises_to(to) && low(to) {
             self.rising_ticks += 1;
         } else {
             (self.coordinate, self.place, self.rising_ticks) = (coordinate, place, 0);

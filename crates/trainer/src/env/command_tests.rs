@@ -79,7 +79,7 @@ fn who_comes_from_where_low_is_right_rises_first() {
     let node = |name: &str, fall| {
         CourseNode::new(name, &EnvironmentConfig { fall, ..EnvironmentConfig::default() }, 1.0)
     };
-    let nodes = vec![node("crouch", Fall::Upright), node("crawl", Fall::Never)];
+    let nodes = vec![node("crouch", Fall::Upright), node("crawl", Fall::Lying)];
     let course = Course::new(nodes, vec![vec![0, 1]]);
     let config = EnvironmentConfig { sweep: 1.0, sweep_secs: [2.0, 2.0], ..EnvironmentConfig::default() };
     let mut rng = Rng::new(6, 1);

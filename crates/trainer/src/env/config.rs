@@ -20,6 +20,8 @@ pub enum Fall {
     /// When pelvis, torso, head, hands, lower arms or thighs come low.
     #[default]
     Upright,
+    /// When the pelvis comes so low that the character lies.
+    Lying,
     /// Never.
     Never,
 }

@@ -3,6 +3,7 @@
 
 use super::command::INTENT_LEN;
 use super::config::{EnvironmentConfig, Fall};
+use super::fallen::FallRule;
 use crate::Rng;
 
 /// A node of a course.
@@ -12,8 +13,10 @@ pub struct CourseNode {
     pub name: String,
     /// Speed that its policy is commanded to, metres per second.
     pub speed_mps: f32,
-    /// Factor on the heights of the fall rule; zero where low is right.
-    pub fall_height: f32,
+    /// Least width of the reward for its speed, metres per second.
+    pub least_width_mps: f32,
+    /// What counts as a fall at it.
+    pub fall: FallRule,
     /// How often episodes rest at it, beside the other nodes of a path.
     pub share: f32,
     /// Factor on the weight of the task reward.
@@ -28,11 +31,16 @@ impl CourseNode {
     /// The node of a skill with these settings.
     #[must_use]
     pub fn new(name: &str, config: &EnvironmentConfig, share: f32) -> Self {
-        let fall_height = if config.fall == Fall::Never { 0.0 } else { config.fall_height };
+        let fall = match config.fall {
+            Fall::Upright => FallRule::Upright(config.fall_height),
+            Fall::Lying => FallRule::Lying,
+            Fall::Never => FallRule::Never,
+        };
         Self {
             name: name.into(),
             speed_mps: config.speed_mps,
-            fall_height,
+            least_width_mps: config.least_width_mps,
+            fall,
             share,
             task: 1.0,
             pelvis_metres: 0.0,
@@ -145,6 +153,12 @@ impl Course {
         self.between(place, |node| node.speed_mps)
     }
 
+    /// Least width of the reward for the speed, metres per second.
+    #[must_use]
+    pub fn least_width_mps(&self, place: Place) -> f32 {
+        self.between(place, |node| node.least_width_mps)
+    }
+
     /// Height of the pelvis above the ground, metres.
     #[must_use]
     pub fn pelvis_metres(&self, place: Place) -> f32 {
@@ -164,12 +178,10 @@ impl Course {
         self.between(place, |node| node.task)
     }
 
-    /// Factor on the heights of the fall rule; zero inside an edge with an end where low is right.
+    /// What counts as a fall.
     #[must_use]
-    pub fn fall_height(&self, place: Place) -> f32 {
-        let ends = self.edges[place.edge].map(|node| self.nodes[node].fall_height);
-        let inside = place.t > 0.0 && place.t < 1.0;
-        if inside && ends.contains(&0.0) { 0.0 } else { self.between(place, |node| node.fall_height) }
+    pub fn fall(&self, place: Place) -> FallRule {
+        FallRule::between(self.edges[place.edge].map(|node| self.nodes[node].fall), place.t)
     }
 
     /// The node that weighs most.
@@ -220,7 +232,8 @@ mod tests {
         CourseNode {
             name: name.into(),
             speed_mps,
-            fall_height: 1.0,
+            least_width_mps: 0.6,
+            fall: FallRule::Upright(1.0),
             share: 1.0,
             task: 1.0,
             pelvis_metres: 0.0,

@@ -15,10 +15,74 @@ const LEAST_HEIGHTS: [(Body, f32); 9] = [
     (Body::LeftThigh, 0.4),
 ];
 
-/// True when a body that should be up has come low; `factor` scales the heights.
-#[must_use]
-pub fn fallen(state: &CharacterState, factor: f32) -> bool {
-    LEAST_HEIGHTS
-        .iter()
-        .any(|(body, height)| state.body(*body).position.z - state.ground_height < height * factor)
+/// A pelvis lower than this above the ground lies, metres.
+const LYING_METRES: f32 = 0.2;
+
+/// What counts as a fall at a place on a course.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum FallRule {
+    /// Nothing.
+    Never,
+    /// To lie: where low is right, but not that low.
+    Lying,
+    /// Any body that should be up coming low, with a factor on the heights.
+    Upright(f32),
+}
+
+impl FallRule {
+    /// The rule between two places: that of an upright body only where both ends have it, with the weight of the second.
+    #[must_use]
+    pub fn between(ends: [Self; 2], t: f32) -> Self {
+        match ends {
+            _ if t == 0.0 => ends[0],
+            _ if t == 1.0 => ends[1],
+            [Self::Upright(from), Self::Upright(to)] => Self::Upright(from + t * (to - from)),
+            [Self::Never, _] | [_, Self::Never] => Self::Never,
+            _ => Self::Lying,
+        }
+    }
+
+    /// True when a step from a place with this rule to one with the other has to wait for a rise.
+    #[must_use]
+    pub fn rises_to(self, to: Self) -> bool {
+        !matches!(self, Self::Upright(_)) && matches!(to, Self::Upright(_))
+    }
+
+    /// True when the character has fallen.
+    #[must_use]
+    pub fn is_broken_by(self, state: &CharacterState) -> bool {
+        let above = |body: Body| state.body(body).position.z - state.ground_height;
+        match self {
+            Self::Never => false,
+            Self::Lying => above(Body::Pelvis) < LYING_METRES,
+            Self::Upright(factor) => {
+                LEAST_HEIGHTS.iter().any(|(body, height)| above(*body) < height * factor)
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn between_an_upright_and_a_low_place_only_lying_is_a_fall() {
+        let [upright, low] = [FallRule::Upright(0.8), FallRule::Lying];
+        assert_eq!(FallRule::between([upright, low], 0.0), upright);
+        assert_eq!(FallRule::between([upright, low], 0.1), low);
+        assert_eq!(FallRule::between([FallRule::Never, low], 0.5), FallRule::Never);
+        assert_eq!(FallRule::between([upright, FallRule::Upright(1.0)], 0.5), FallRule::Upright(0.9));
+        assert!(low.rises_to(upright) && !upright.rises_to(low) && !upright.rises_to(upright));
+    }
+
+    #[test]
+    fn on_hands_and_knees_nobody_lies_but_nobody_is_upright() {
+        let mut state = CharacterState::default();
+        for metres in [0.3, 0.1] {
+            state.bodies.iter_mut().for_each(|body| body.position.z = metres);
+            assert!(FallRule::Upright(1.0).is_broken_by(&state) && !FallRule::Never.is_broken_by(&state));
+            assert_eq!(FallRule::Lying.is_broken_by(&state), metres < 0.2);
+        }
+    }
 }

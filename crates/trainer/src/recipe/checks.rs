@@ -30,12 +30,6 @@ impl Recipe {
                 self.parent.clone().unwrap_or_default(),
             ),
             (
-                self.frozen.iter().all(|name| self.paths.iter().flatten().any(|n| n == name)),
-                "frozen",
-                "skills of the paths",
-                format!("{:?}", self.frozen),
-            ),
-            (
                 self.paths.iter().all(|p| p.len() > 1),
                 "paths",
                 "at least two skills in each",
