@@ -11,7 +11,7 @@ use self::mishap::Mishaps;
 use super::command::{Command, DT_SECS};
 use super::config::{EnvironmentConfig, Task};
 use super::demonstrations::{Demonstrations, Moment};
-use super::fallen::FallRule;
+use super::fallen::{FallRule, stands};
 use super::imitation::Likeness;
 use super::population::Stage;
 use super::reward::{RewardTerms, standing_reward, target_reward};
@@ -47,6 +47,8 @@ pub struct Agent {
     /// What it is to imitate next, and for how many ticks it may be far from it.
     imitated: Option<(Moment, u32)>,
     mishaps: Mishaps,
+    /// Ticks of the episode in which it stood.
+    stood_ticks: u32,
 }
 
 impl Agent {
@@ -64,6 +66,7 @@ impl Agent {
             place: (0.0, 0.0),
             imitated: None,
             mishaps: Mishaps::default(),
+            stood_ticks: 0,
         }
     }
 
@@ -75,6 +78,7 @@ impl Agent {
         self.born_at = self.rng.index(if first { ticks } else { ticks.div_ceil(4) }) as u32;
         self.age = self.born_at;
         self.mishaps.begin();
+        self.stood_ticks = 0;
         if self.rng.chance(config.start.mishap) && self.start_before_failure(stage) {
             return;
         }
@@ -173,6 +177,7 @@ impl Agent {
         self.push_frame(stage);
         self.history.input_into(discriminator_input);
         self.age += 1;
+        self.stood_ticks += u32::from(stands(&self.state));
         let velocity = (self.position() - before) / DT_SECS;
         let place = self.command.place;
         let speed = (stage.course.speed_mps(place), stage.course.least_width_mps(place));
@@ -204,7 +209,7 @@ impl Agent {
     /// Renews target and place on the course, after the tick's reward.
     pub fn advance_command(&mut self, stage: &Stage<'_>) {
         let position = self.position();
-        let low = |rule: FallRule| rule.is_broken_by(&self.state);
+        let low = |rule: FallRule| rule.is_broken_by(&self.state, true);
         self.command.advance(stage.config, stage.course, position, low, &mut self.rng);
     }
 
@@ -225,7 +230,7 @@ impl Agent {
     }
 
     fn has_fallen(&self, stage: &Stage<'_>) -> bool {
-        stage.course.fall(self.command.place).is_broken_by(&self.state)
+        stage.course.fall(self.command.place).is_broken_by(&self.state, self.stood_ticks >= STOOD_TICKS)
     }
 }
 
@@ -233,6 +238,9 @@ impl Agent {
 fn own_clips<'a>(stage: &Stage<'a>) -> &'a Demonstrations {
     stage.demonstrations[stage.demonstrations.len() - 1]
 }
+
+/// Ticks after which a character counts as one that has stood.
+const STOOD_TICKS: u32 = 5;
 
 /// Draws of a start state until one is none that fails at once; the last one is taken as it is.
 const START_TRIES: usize = 4;

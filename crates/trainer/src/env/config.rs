@@ -22,6 +22,8 @@ pub enum Fall {
     Upright,
     /// When the pelvis comes so low that the character lies.
     Lying,
+    /// When who had stood up goes down again.
+    Again,
     /// Never.
     Never,
 }

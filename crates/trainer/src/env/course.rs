@@ -34,6 +34,7 @@ impl CourseNode {
         let fall = match config.fall {
             Fall::Upright => FallRule::Upright(config.fall_height),
             Fall::Lying => FallRule::Lying,
+            Fall::Again => FallRule::Again,
             Fall::Never => FallRule::Never,
         };
         Self {

@@ -18,11 +18,23 @@ const LEAST_HEIGHTS: [(Body, f32); 9] = [
 /// A pelvis lower than this above the ground lies, metres.
 const LYING_METRES: f32 = 0.2;
 
+/// A pelvis higher than this above the ground stands, and lower than the other has gone down again, metres.
+const STANDING_METRES: f32 = 0.75;
+const DOWN_METRES: f32 = 0.5;
+
+/// True when the pelvis is as high as that of one who stands.
+#[must_use]
+pub fn stands(state: &CharacterState) -> bool {
+    state.body(Body::Pelvis).position.z - state.ground_height > STANDING_METRES
+}
+
 /// What counts as a fall at a place on a course.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum FallRule {
     /// Nothing.
     Never,
+    /// To go down again after having stood.
+    Again,
     /// To lie: where low is right, but not that low.
     Lying,
     /// Any body that should be up coming low, with a factor on the heights.
@@ -38,6 +50,7 @@ impl FallRule {
             _ if t == 1.0 => ends[1],
             [Self::Upright(from), Self::Upright(to)] => Self::Upright(from + t * (to - from)),
             [Self::Never, _] | [_, Self::Never] => Self::Never,
+            [Self::Again, _] | [_, Self::Again] => Self::Again,
             _ => Self::Lying,
         }
     }
@@ -48,12 +61,13 @@ impl FallRule {
         !matches!(self, Self::Upright(_)) && matches!(to, Self::Upright(_))
     }
 
-    /// True when the character has fallen.
+    /// True when the character has fallen; `stood` tells whether it has [stood](stands) in this episode.
     #[must_use]
-    pub fn is_broken_by(self, state: &CharacterState) -> bool {
+    pub fn is_broken_by(self, state: &CharacterState, stood: bool) -> bool {
         let above = |body: Body| state.body(body).position.z - state.ground_height;
         match self {
             Self::Never => false,
+            Self::Again => stood && above(Body::Pelvis) < DOWN_METRES,
             Self::Lying => above(Body::Pelvis) < LYING_METRES,
             Self::Upright(factor) => {
                 LEAST_HEIGHTS.iter().any(|(body, height)| above(*body) < height * factor)
@@ -81,8 +95,14 @@ mod tests {
         let mut state = CharacterState::default();
         for metres in [0.3, 0.1] {
             state.bodies.iter_mut().for_each(|body| body.position.z = metres);
-            assert!(FallRule::Upright(1.0).is_broken_by(&state) && !FallRule::Never.is_broken_by(&state));
-            assert_eq!(FallRule::Lying.is_broken_by(&state), metres < 0.2);
+            assert!(
+                FallRule::Upright(1.0).is_broken_by(&state, true)
+                    && !FallRule::Never.is_broken_by(&state, true)
+            );
+            assert_eq!(FallRule::Lying.is_broken_by(&state, true), metres < 0.2);
+            assert!(
+                FallRule::Again.is_broken_by(&state, true) && !FallRule::Again.is_broken_by(&state, false)
+            );
         }
     }
 }

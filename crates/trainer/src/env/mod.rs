@@ -19,7 +19,7 @@ pub use command::{Command, DT_SECS};
 pub use config::{EnvironmentConfig, Fall, Start, Task};
 pub use course::{Course, CourseNode, Place};
 pub use demonstrations::{Demonstrations, Moment, StartPose};
-pub use fallen::FallRule;
+pub use fallen::{FallRule, stands};
 pub use fitted::{Fitted, SourceError, fit};
 pub use imitation::Likeness;
 pub use normalisers::Normalisers;
