@@ -133,7 +133,7 @@ fn who_leaves_a_crawl_rises_before_the_place_is_left() {
     };
     let crouching = Command { goal: Goal::Node(1), ..Command::default() };
     let mut controller = controller(0.0, "crawl");
-    let mut ticks = |controller: &mut Controller, pelvis: f32, count: u32| {
+    let ticks = |controller: &mut Controller, pelvis: f32, count: u32| {
         for _ in 0..count {
             controller.tick(&at(pelvis), &crouching, DT);
         }
