@@ -9,8 +9,8 @@ const FALL_SECONDS: f32 = 0.3;
 /// The pelvis has risen when it is this much higher than where it would have fallen, metres.
 const RISEN_METRES: f32 = 0.1;
 
-/// Seconds that a rise may take before it counts as a fall.
-const RISE_SECONDS: f32 = 3.0;
+/// Seconds that a rise may take, out of where low is right, before it counts as a fall.
+pub const RISE_SECONDS: f32 = 3.0;
 
 /// Watches one character.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]

@@ -84,6 +84,7 @@ pub use body::{BODY_COUNT, BODY_NAMES, Body, DOF_COUNT, JOINT_NAMES};
 pub use command::{Command, Goal};
 pub use controller::{Controller, ControllerConfig};
 pub use evaluator::{BlendEvaluator, BlendMode, Evaluation};
+pub use fall::RISE_SECONDS;
 pub use features::{
     DISCRIMINATOR_INPUT_LEN, FRAME_AGES, FRAME_LEN, FrameHistory, HISTORY_LEN, discriminator_frame_into,
 };
