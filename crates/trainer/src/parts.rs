@@ -1,21 +1,25 @@
 //! What a run starts from: the networks, clips and course of a recipe, put together from the checkpoints of its parents.
 
 use std::path::PathBuf;
+use std::sync::Arc;
 
 use anyhow::{Context, Result, ensure};
-use policy_core::{DOF_COUNT, POLICY_INPUT_LEN};
+use policy_core::{Controller, ControllerConfig, DOF_COUNT, POLICY_INPUT_LEN};
 
 use crate::Rng;
 use crate::amp::DiscriminatorLearner;
 use crate::checkpoint::Checkpoint;
-use crate::env::{Course, CourseNode, Demonstrations};
+use crate::env::{Course, CourseNode, Demonstrations, Recovery};
 use crate::nn::Network;
-use crate::pack::Ingredient;
+use crate::pack::{Ingredient, PackPlan, bind};
 use crate::ppo::{Actor, Learner};
 use crate::recipe::Recipe;
 use crate::style::{Judge, Judges};
 use crate::training::{POLICY_HIDDEN, Parts};
 use crate::workplace::Workplace;
+
+/// Plan of the pack, in the folder of recipes.
+const PLAN: &str = "pack/humanoid.toml";
 
 /// How often episodes of an edge rest at the parent and at the child.
 const EDGE_SHARES: [f32; 2] = [0.3, 0.7];
@@ -99,7 +103,8 @@ impl Workplace {
         };
         let course = Course::new(nodes, vec![path]);
         let learner = Learner::new(recipe.ppo.clone(), actors, course.edges().to_vec(), critic, rng);
-        Ok(Parts { course, learner, judges: Judges::new(judges, Vec::new()), start_demonstrations })
+        let judges = Judges::new(judges, Vec::new());
+        Ok(Parts { course, learner, judges, start_demonstrations, recovery: None })
     }
 
     /// All skills of some paths together, none of them frozen.
@@ -154,7 +159,37 @@ impl Workplace {
         ensure!(critic.sizes() == sizes, "expected a critic of sizes {sizes:?}, found {:?}", critic.sizes());
         let learner = Learner::new(recipe.ppo.clone(), actors, course.edges().to_vec(), critic, rng);
         let start_demonstrations = self.start_clips(recipe)?;
-        Ok(Parts { course, learner, judges: Judges::new(judges, halfway), start_demonstrations })
+        let recovery = match &recipe.environment.start.after {
+            Some(after) => Some(self.recovery(&after.skill, &course)?),
+            None => None,
+        };
+        let judges = Judges::new(judges, halfway);
+        Ok(Parts { course, learner, judges, start_demonstrations, recovery })
+    }
+
+    /// An episodic skill of the pack's plan, ready to raise characters.
+    fn recovery(&self, name: &str, course: &Course) -> Result<Recovery> {
+        let plan = PackPlan::load(&self.recipes.join(PLAN))?;
+        let skill = plan.skills.iter().find(|s| s.name == name).cloned();
+        let skill = skill.with_context(|| format!("expected an episodic skill of {PLAN}, found {name}"))?;
+        let node = course.nodes().iter().position(|node| node.name == skill.returns_to);
+        let node = node.with_context(|| {
+            format!("{name}: expected to return to a skill of the paths, found {}", skill.returns_to)
+        })?;
+        let needed =
+            |n: &str| n == skill.policy || n == skill.returns_to || Some(n) == skill.discriminator.as_deref();
+        let mut plan = plan.only(needed);
+        plan.skills.retain(|s| s.name == name);
+        let mut ingredients = Vec::new();
+        for policy in &plan.policies {
+            let (checkpoint, path) = self.trained(&policy.name)?.with_context(|| {
+                format!("starts after {name} need {}, which is not trained yet", policy.name)
+            })?;
+            ingredients.push(Ingredient::from_checkpoint(&policy.name, &checkpoint, &path)?);
+        }
+        let pack = Arc::new(bind(&plan, &ingredients, &self.normalisers, &self.model)?);
+        let config = ControllerConfig { recover: false, ..ControllerConfig::default() };
+        Ok(Recovery { controller: Controller::with_config(pack, config), skill: 0, node })
     }
 
     /// The faster skill's first clip, half-way to a pose of the slower one's.
@@ -215,7 +250,7 @@ mod tests {
         let mut input: Vec<f32> = (0..POLICY_INPUT_LEN).map(|_| rng.normal()).collect();
         let mut of_wide = input.clone();
         input.push(1.0);
-        of_wide.extend_from_slice(&[0.25, 0.0, 0.75, 1.5, -2.0]);
+        of_wide.extend_from_slice(&[0.25, 0.0, 0.75, 1.5, -2.0, 1.0]);
         let (mut a, mut b) = (Pass::new(critic.sizes(), 1), Pass::new(wide.sizes(), 1));
         a.forward(&critic, None, &input);
         b.forward(&wide, None, &of_wide);

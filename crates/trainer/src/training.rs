@@ -4,7 +4,7 @@ use physics_bridge::{Model, ModelError, Terrain};
 use policy_core::{ActionScaling, DISCRIMINATOR_INPUT_LEN, DOF_COUNT, POLICY_INPUT_LEN};
 
 use crate::amp::DiscriminatorReport;
-use crate::env::{Course, Demonstrations, Normalisers, Place, Population, PopulationReport};
+use crate::env::{Course, Demonstrations, Normalisers, Place, Population, PopulationReport, Recovery};
 use crate::nn::{Adam, Network};
 use crate::ppo::{Done, Learner, Rollout, UpdateReport};
 use crate::recipe::Recipe;
@@ -31,6 +31,8 @@ pub struct Parts {
     pub judges: Judges,
     /// Other clips that episodes may start from.
     pub start_demonstrations: Option<Demonstrations>,
+    /// What raises characters that were dropped, for starts.
+    pub recovery: Option<Recovery>,
 }
 
 /// Everything a run of a recipe holds.
@@ -78,13 +80,14 @@ impl Training {
     /// Starts a run.
     #[must_use]
     pub fn new(recipe: Recipe, model: &Model, normalisers: Normalisers, parts: Parts, seed: u64) -> Self {
-        let Parts { course, learner, judges, start_demonstrations } = parts;
+        let Parts { course, learner, judges, start_demonstrations, recovery } = parts;
         let shape = (recipe.environment.steps, recipe.environment.characters);
         let (low, high) = model.joint_limits();
         let scaling = ActionScaling::from_joint_limits(low, high).expect("a loaded model has finite limits");
         let demonstrations = judges.demonstrations();
         let environment = recipe.environment_at(0);
-        let setting = Setting { environment, course, start_demonstrations, normalisers };
+        let task = recipe.phase_at(0).1.task;
+        let setting = Setting { environment, task, course, start_demonstrations, recovery, normalisers };
         let stage = setting.stage(&demonstrations);
         let population = Population::new(std::slice::from_ref(model), &scaling, &stage, seed);
         Self {
@@ -168,6 +171,7 @@ impl Training {
         self.learner.config.deviation = phase.deviation.unwrap_or(self.recipe.ppo.deviation);
         self.learner.config.guide = phase.guide;
         self.setting.environment = self.recipe.environment_at(self.samples);
+        self.setting.task = phase.task;
         let start = std::time::Instant::now();
         self.roll_out();
         let rolled = start.elapsed();
@@ -199,7 +203,6 @@ impl Training {
         let stage = self.setting.stage(&demonstrations);
         let width = stage.critic_inputs();
         self.rollout.clear();
-        let task_share = self.recipe.phase_at(self.samples).1.task;
         let guided = self.learner.config.guide > 0.0;
         self.rollout.guides.resize(if guided { self.rollout.actions.len() } else { 0 }, f32::NAN);
         for step in 0..self.rollout.steps {
@@ -226,7 +229,7 @@ impl Training {
             let at = self.rollout.edge[rows.clone()].iter().zip(&self.rollout.blend[rows.clone()]);
             let rewards = self.rollout.rewards[rows].iter_mut().zip(self.population.terms());
             for (((reward, terms), end), (edge, t)) in rewards.zip(self.population.ends()).zip(at) {
-                let share = task_share * self.setting.course.task(Place { edge: *edge, t: *t });
+                let share = self.setting.task_share(Place { edge: *edge, t: *t });
                 let cost = if *end == Done::Failed { self.setting.environment.fall_cost } else { 0.0 };
                 *reward = share * terms.task + self.setting.environment.imitation * terms.imitation - cost;
             }
@@ -236,13 +239,11 @@ impl Training {
 
     /// Adds the style reward, by the weight that the others leave, to the rewards that are there and teaches the judges; returns the mean style.
     fn judge(&mut self) -> (f32, DiscriminatorReport) {
-        let task_share = self.recipe.phase_at(self.samples).1.task;
         let places = (&self.rollout.edge[..], &self.rollout.blend[..]);
         let style = self.judges.style(&self.setting.course, places, &self.judged);
         let at = places.0.iter().zip(places.1).map(|(edge, t)| Place { edge: *edge, t: *t });
         for ((reward, style), place) in self.rollout.rewards.iter_mut().zip(style).zip(at) {
-            let share = task_share * self.setting.course.task(place);
-            *reward += (1.0 - share - self.setting.environment.imitation) * style;
+            *reward += self.setting.style_share(place) * style;
         }
         let mean = style.iter().sum::<f32>() / style.len() as f32;
         (mean, self.judges.learn(&self.setting.course, places, &self.judged))

@@ -62,7 +62,8 @@ impl Workplace {
         let mut ordered: Vec<Recipe> = Vec::new();
         while !left.is_empty() {
             let ready = |r: &Recipe| {
-                let mut needed = r.parent.iter().chain(r.paths.iter().flatten());
+                let after = r.environment.start.after.iter().map(|after| &after.skill);
+                let mut needed = r.parent.iter().chain(r.paths.iter().flatten()).chain(after);
                 needed.all(|p| ordered.iter().any(|o| o.skill == *p))
             };
             let Some(skill) = left.values().find(|r| ready(r)).map(|r| r.skill.clone()) else {

@@ -118,12 +118,14 @@ fn every_recipe_runs_and_binds_into_a_pack() {
     bind(&partial, &ingredients, &normalisers, &model).unwrap();
 }
 
-/// From the slim checkpoint of the joint run alone, all of it goes on, and so does a child of one of its skills.
+/// From the slim checkpoints of the joint run and of what it starts after alone, all of it goes on, and so does a child of one of its skills.
 fn what_was_kept_is_enough_to_go_on(workplace: &Workplace, folder: &Path) {
     let kept = folder.join("kept_alone");
     std::fs::create_dir(&kept).unwrap();
-    let path = workplace.checkpoint("locomotion");
-    Checkpoint::load(&path).unwrap().slim().save(&kept.join("locomotion.safetensors")).unwrap();
+    for skill in ["locomotion", "get_up"] {
+        let slim = Checkpoint::load(&workplace.checkpoint(skill)).unwrap().slim();
+        slim.save(&kept.join(format!("{skill}.safetensors"))).unwrap();
+    }
     let alone = Workplace { kept, runs: folder.join("runs_alone"), ..workplace.clone() };
     for skill in ["locomotion", "get_up"] {
         let mut run = alone.prepare(small(alone.recipe(skill).unwrap()), 3, true).unwrap();
@@ -134,31 +136,63 @@ fn what_was_kept_is_enough_to_go_on(workplace: &Workplace, folder: &Path) {
     assert!(missing.is_ok(), "its parent was trained together with others");
 }
 
-#[test]
-fn a_character_that_starts_in_its_clip_is_like_it_until_it_loses_it() {
-    let folder = tempfile::tempdir().unwrap();
-    write_clip(folder.path(), "walk");
-    write_clip(folder.path(), "idle");
+/// Somewhere to train Walk and Idle, of clips that only sway.
+fn workplace_with_clips(folder: &Path) -> Workplace {
+    write_clip(folder, "walk");
+    write_clip(folder, "idle");
     let model = Model::load(project().join("assets/humanoid.xml")).unwrap();
-    let text = "skill = \"walk\"\nclips = [{ name = \"walk\" }]\n[[phases]]\nsamples = 100000\ntask = 0.0\nimitation = 1.0\n";
-    let recipe = small(Recipe::parse(Path::new("x.toml"), text).unwrap());
-    let clips = ClipFolder::from_argument(Some(folder.path().to_owned())).unwrap();
+    let clips = ClipFolder::from_argument(Some(folder.to_owned())).unwrap();
     let normalisers = Normalisers::from_clips(&[clips.load("walk").unwrap()], &model).unwrap();
-    let workplace = Workplace {
+    Workplace {
         recipes: project().join("assets/recipes"),
-        runs: folder.path().join("runs"),
-        kept: folder.path().join("kept"),
+        runs: folder.join("runs"),
+        kept: folder.join("kept"),
         clips,
         model,
         normalisers,
-    };
-    let mut run = workplace.prepare(recipe, 1, false).unwrap();
-    let mut best = 0.0_f64;
-    for _ in 0..100 {
-        let population = run.advance().unwrap().population;
-        best = best.max(population.imitation / population.ticks as f64);
     }
+}
+
+#[test]
+fn a_character_that_starts_in_its_clip_is_like_it_until_it_loses_it() {
+    let folder = tempfile::tempdir().unwrap();
+    let workplace = workplace_with_clips(folder.path());
+    let text = "skill = \"walk\"\nclips = [{ name = \"walk\" }]\n[[phases]]\nsamples = 100000\ntask = 0.0\nimitation = 1.0\n";
+    let recipe = small(Recipe::parse(Path::new("x.toml"), text).unwrap());
+    let best = best_imitation(&mut workplace.prepare(recipe, 1, false).unwrap());
     assert!((0.5..1.0).contains(&best), "{best}");
+}
+
+fn best_imitation(run: &mut Run) -> f64 {
+    let each = (0..100).map(|_| {
+        let population = run.advance().unwrap().population;
+        population.imitation / population.ticks as f64
+    });
+    let best = each.fold(0.0, f64::max);
+    run.save().unwrap();
+    best
+}
+
+#[test]
+fn imitators_are_like_the_clips_of_the_nodes_they_rest_at() {
+    let folder = tempfile::tempdir().unwrap();
+    let workplace = workplace_with_clips(folder.path());
+    let recipe = |text: &str| small(Recipe::parse(Path::new("x.toml"), text).unwrap());
+    let walk = "skill = \"walk\"\nclips = [{ name = \"walk\" }]\n[[phases]]\nsamples = 24\ntask = 0.0\n";
+    let idle = "skill = \"idle\"\nparent = \"walk\"\nclips = [{ name = \"idle\" }]\n[[phases]]\nsamples = 24\ntask = 0.5\n";
+    for skill in [walk, idle] {
+        let mut run = workplace.prepare(recipe(skill), 1, false).unwrap();
+        run.advance().unwrap();
+        run.save().unwrap();
+    }
+    let both = "skill = \"both\"\npaths = [[\"walk\", \"idle\"]]\n[[phases]]\nsamples = 100000\ntask = 0.5\n";
+    let mut all = recipe(both);
+    all.environment.start.along = true;
+    assert_eq!(best_imitation(&mut workplace.prepare(all.clone(), 1, false).unwrap()), 0.0);
+    all.skill = "again".into();
+    (all.environment.imitators, all.environment.imitation) = (1.0, 0.5);
+    let best = best_imitation(&mut workplace.prepare(all, 1, false).unwrap());
+    assert!((0.3..1.0).contains(&best), "{best}");
 }
 
 fn the_pack_acts_as_the_trainer(pack: &CharacterPack, ingredients: &[Ingredient]) {
@@ -186,7 +220,12 @@ fn unknown_fields_and_senseless_values_are_named() {
     assert!(parse(&good.replace("0.5", "0.5\nguide = -1.0")).contains("phases.guide"));
     let together = good.replace("clips = [{ name = \"walk\" }]", "paths = [[\"a\", \"b\"]]");
     assert!(Recipe::parse(Path::new("x.toml"), &together).is_ok());
-    assert!(parse(&together.replace("0.5", "0.5\nimitation = 0.1")).contains("paths"));
+    assert!(parse(&together.replace("0.5", "0.5\nguide = 0.1")).contains("paths"));
+    assert!(parse(&format!("{good}[environment]\nimitators = 0.1\n")).contains("imitators"));
+    let after = "[environment.start]\nafter = { skill = \"get_up\", share = 0.1 }\n";
+    assert!(Recipe::parse(Path::new("x.toml"), &format!("{together}{after}")).is_ok());
+    assert!(parse(&format!("{good}{after}")).contains("start.after"));
+    assert!(parse(&format!("{together}{}", after.replace("0.1", "1.5"))).contains("start.after"));
     assert!(parse(&good.replace("0.5", "0.5\nfall_cost = -1.0")).contains("fall_cost"));
     assert!(parse(&good.replace("0.5", "0.5\nmishap = 1.5")).contains("mishap"));
     assert!(parse(&good.replace("0.5", "0.5\nmishap = 0.5\nimitation = 0.5")).contains("mishap"));

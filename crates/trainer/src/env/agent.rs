@@ -7,19 +7,22 @@ use policy_core::{
     JointTargets, OBSERVATION_LEN, POLICY_INPUT_LEN, discriminator_frame_into, observe_into, target_input,
 };
 
+use self::imitate::{Imitated, own_clips};
 use self::mishap::Mishaps;
 use super::command::{Command, DT_SECS};
 use super::config::{EnvironmentConfig, Task};
-use super::demonstrations::{Demonstrations, Moment};
 use super::fallen::{FallRule, stands};
-use super::imitation::Likeness;
 use super::population::Stage;
 use super::reward::{RewardTerms, standing_reward, target_reward};
 use crate::Rng;
 use crate::ppo::Done;
 
+mod imitate;
 mod mishap;
+mod rise;
 mod start;
+
+pub use self::rise::Recovery;
 
 /// What a finished episode was.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -44,8 +47,10 @@ pub struct Agent {
     /// Age at which the episode began.
     born_at: u32,
     place: (f64, f64),
-    /// What it is to imitate next, and for how many ticks it may be far from it.
-    imitated: Option<(Moment, u32)>,
+    /// What it imitates, if anything.
+    imitated: Option<Imitated>,
+    /// True when it imitates the clips of every node that it rests at.
+    imitator: bool,
     mishaps: Mishaps,
     /// Ticks of the episode in which it stood.
     stood_ticks: u32,
@@ -65,6 +70,7 @@ impl Agent {
             born_at: 0,
             place: (0.0, 0.0),
             imitated: None,
+            imitator: false,
             mishaps: Mishaps::default(),
             stood_ticks: 0,
         }
@@ -83,7 +89,13 @@ impl Agent {
             return;
         }
         self.choose_place();
-        self.command = Command::start(config, stage.course, &mut self.rng);
+        let risen = config.start.after.as_ref().map_or(0.0, |after| after.share);
+        if self.rng.chance(risen) && self.start_risen(stage) {
+            self.imitator = false;
+            return;
+        }
+        self.imitator = self.rng.chance(config.imitators);
+        self.command = Command::start(config, stage.course, self.imitator, &mut self.rng);
         let limp = self.rng.chance(config.start.ragdoll);
         for _ in 0..START_TRIES {
             let start = self.draw_start(stage);
@@ -101,31 +113,6 @@ impl Agent {
         if limp || config.imitation == 0.0 {
             self.imitated = None;
         }
-    }
-
-    /// Writes the action that would follow the imitated clip from here; NaN when there is none.
-    pub fn guide_into(&self, stage: &Stage<'_>, scaling: &ActionScaling, out: &mut [f32]) {
-        match self.imitated {
-            Some((moment, _)) => {
-                let angles = own_clips(stage).ahead(moment);
-                let scales = angles.iter().zip(scaling.centre()).zip(scaling.gain());
-                let actions =
-                    scales.map(|((angle, centre), gain)| ((angle - centre) / gain).clamp(-1.0, 1.0));
-                out.iter_mut().zip(actions).for_each(|(out, action)| *out = action);
-            }
-            None => out.fill(f32::NAN),
-        }
-    }
-
-    /// Moves what is imitated on by a tick; the reward for being like it and how the episode ends by it.
-    fn imitate(&mut self, stage: &Stage<'_>) -> (f32, Done) {
-        let Some((moment, free)) = self.imitated else { return (0.0, Done::No) };
-        let Some(moment) = own_clips(stage).after(moment) else { return (0.0, Done::TimedOut) };
-        self.imitated = Some((moment, free.saturating_sub(1)));
-        let is = Likeness::of(&self.state);
-        let [clip, mirrored] = own_clips(stage).likenesses(moment);
-        let lost = free == 0 && is.is_lost(clip) && is.is_lost(mirrored);
-        (is.reward(clip).max(is.reward(mirrored)), if lost { Done::Failed } else { Done::No })
     }
 
     fn push_frame(&mut self, stage: &Stage<'_>) {
@@ -201,7 +188,8 @@ impl Agent {
         if config.start.mishap > 0.0 && self.mishaps.tick() {
             self.mishaps.keep(&self.character, &self.history, self.command);
         }
-        let (imitation, lost) = self.imitate(stage);
+        let (imitation, lost) =
+            if self.imitator { (self.imitate_node(stage), Done::No) } else { self.imitate(stage) };
         let old = self.age >= config.episode_ticks;
         (RewardTerms { imitation, ..terms }, if lost == Done::No && old { Done::TimedOut } else { lost })
     }
@@ -232,11 +220,6 @@ impl Agent {
     fn has_fallen(&self, stage: &Stage<'_>) -> bool {
         stage.course.fall(self.command.place).is_broken_by(&self.state, self.stood_ticks >= STOOD_TICKS)
     }
-}
-
-/// The clips of the skill that is learned: the last node's.
-fn own_clips<'a>(stage: &Stage<'a>) -> &'a Demonstrations {
-    stage.demonstrations[stage.demonstrations.len() - 1]
 }
 
 /// Ticks after which a character counts as one that has stood.

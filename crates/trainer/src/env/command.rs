@@ -1,7 +1,7 @@
 //! What a character is asked to do during an episode: a target that is renewed, and a place on a course that moves.
 
 use glam::Vec2;
-use policy_core::TARGET_RANGE_METRES;
+use policy_core::{RISE_SECONDS, TARGET_RANGE_METRES};
 
 use super::config::EnvironmentConfig;
 use super::course::{Course, Place};
@@ -10,9 +10,6 @@ use crate::Rng;
 
 /// Seconds of a control tick.
 pub const DT_SECS: f32 = 1.0 / 30.0;
-
-/// Seconds that a rise may take, as in a game's controller.
-const RISE_SECS: f32 = 3.0;
 
 /// Numbers of [`Command::intent_into`].
 pub const INTENT_LEN: usize = 2;
@@ -46,25 +43,51 @@ pub struct Command {
 }
 
 impl Command {
-    /// A command at the start of an episode, on a random path of the course. [`Command::aim`] gives it a target.
+    /// A command at the start of an episode, on a random path of the course, `at_node` or anywhere. [`Command::aim`] gives it
+    /// a target.
     #[must_use]
-    pub fn start(config: &EnvironmentConfig, course: &Course, rng: &mut Rng) -> Self {
+    pub fn start(config: &EnvironmentConfig, course: &Course, at_node: bool, rng: &mut Rng) -> Self {
         let path = rng.index(course.paths());
-        let coordinate = course.draw(path, rng);
-        let place = course.place(path, coordinate);
-        let mut command =
-            Self { path, coordinate, asked: coordinate, goal: coordinate, place, ..Self::default() };
+        let coordinate = if at_node { course.draw_node(path, rng) } else { course.draw(path, rng) };
+        let mut command = Self::at(course, path, coordinate);
         // Half of the others move.
         let end = course.end(path);
-        command.sweeps = end > 0.0 && rng.chance(config.sweep);
+        command.sweeps = end > 0.0 && !at_node && rng.chance(config.sweep);
         if command.sweeps {
             command.goal = if rng.chance(0.5) { end } else { 0.0 };
             command.rate = 2.0 * end * DT_SECS / rng.range(config.sweep_secs[0], config.sweep_secs[1]);
         } else if end > 0.0 && rng.chance(0.5) {
-            command.rate = DT_SECS / rng.range(config.edge_sweep_secs[0], config.edge_sweep_secs[1]);
-            command.goal = course.draw(path, rng);
+            command.go_elsewhere(config, course, rng);
         }
         command
+    }
+
+    /// A command at the start of an episode at one node, on a random path through it; in half of the cases to rest there.
+    ///
+    /// # Panics
+    /// When the node is on no path.
+    #[must_use]
+    pub fn start_at(config: &EnvironmentConfig, course: &Course, node: usize, rng: &mut Rng) -> Self {
+        let through = (0..course.paths()).filter(|path| course.path(*path).contains(&node));
+        let path = through.clone().nth(rng.index(through.count())).expect("an index below the count");
+        let coordinate = course.path(path).iter().position(|n| *n == node).expect("a path through it") as f32;
+        let mut command = Self::at(course, path, coordinate);
+        if rng.chance(0.5) {
+            command.go_elsewhere(config, course, rng);
+        }
+        command
+    }
+
+    /// At rest at a coordinate of a path.
+    fn at(course: &Course, path: usize, coordinate: f32) -> Self {
+        let place = course.place(path, coordinate);
+        Self { path, coordinate, asked: coordinate, goal: coordinate, place, ..Self::default() }
+    }
+
+    /// Lets the coordinate go to another one, and from there to others.
+    fn go_elsewhere(&mut self, config: &EnvironmentConfig, course: &Course, rng: &mut Rng) {
+        self.rate = DT_SECS / rng.range(config.edge_sweep_secs[0], config.edge_sweep_secs[1]);
+        self.goal = course.draw(self.path, rng);
     }
 
     /// Sets the first target of an episode that starts at `position` with `heading`.
@@ -90,7 +113,7 @@ impl Command {
     /// True when it has been held back for longer than a rise may take.
     #[must_use]
     pub fn stuck(&self) -> bool {
-        self.rising_ticks as f32 * DT_SECS >= RISE_SECS
+        self.rising_ticks as f32 * DT_SECS >= RISE_SECONDS
     }
 
     /// Moves the command on by a tick. As in a game, the coordinate goes from where low is right to where it is not once the

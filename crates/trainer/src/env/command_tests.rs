@@ -15,7 +15,7 @@ fn on_a_single_node_the_blend_stays() {
     let config = EnvironmentConfig::default();
     let course = Course::new(edge().nodes().to_vec(), vec![vec![1]]);
     let mut rng = Rng::new(1, 1);
-    let mut command = Command::start(&config, &course, &mut rng);
+    let mut command = Command::start(&config, &course, false, &mut rng);
     command.aim(&config, &course, (Vec2::ZERO, 0.0), &mut rng);
     for _ in 0..1000 {
         command.advance(&config, &course, Vec2::ZERO, |_| false, &mut rng);
@@ -28,7 +28,7 @@ fn blends_and_targets_stay_in_range_and_are_renewed() {
     let (config, course, mut rng) = (EnvironmentConfig::default(), edge(), Rng::new(2, 1));
     let (mut at_child, mut targets, mut count) = (0, 0, 0);
     for _ in 0..200 {
-        let mut command = Command::start(&config, &course, &mut rng);
+        let mut command = Command::start(&config, &course, false, &mut rng);
         command.aim(&config, &course, (Vec2::ONE, 0.0), &mut rng);
         for _ in 0..150 {
             let before = command.target;
@@ -54,7 +54,7 @@ fn a_moving_coordinate_rests_where_it_came_to() {
     let (course, mut rng) = (edge(), Rng::new(4, 1));
     let (mut rests, mut moves) = (0, 0);
     for _ in 0..50 {
-        let mut command = Command::start(&config, &course, &mut rng);
+        let mut command = Command::start(&config, &course, false, &mut rng);
         command.aim(&config, &course, (Vec2::ZERO, 0.0), &mut rng);
         let mut still = 60;
         for _ in 0..300 {
@@ -83,7 +83,7 @@ fn who_comes_from_where_low_is_right_rises_first() {
     let course = Course::new(nodes, vec![vec![0, 1]]);
     let config = EnvironmentConfig { sweep: 1.0, sweep_secs: [2.0, 2.0], ..EnvironmentConfig::default() };
     let mut rng = Rng::new(6, 1);
-    let mut command = Command::start(&config, &course, &mut rng);
+    let mut command = Command::start(&config, &course, false, &mut rng);
     while command.place.t > 0.0 {
         command.advance(&config, &course, Vec2::ZERO, |_| false, &mut rng);
     }
@@ -101,7 +101,7 @@ fn a_sweep_goes_to_both_ends_and_does_not_rest() {
     let config = EnvironmentConfig { sweep: 1.0, sweep_secs: [4.0, 4.0], ..EnvironmentConfig::default() };
     let (course, mut rng) = (edge(), Rng::new(5, 1));
     for _ in 0..20 {
-        let mut command = Command::start(&config, &course, &mut rng);
+        let mut command = Command::start(&config, &course, false, &mut rng);
         command.aim(&config, &course, (Vec2::ZERO, 0.0), &mut rng);
         let (mut ends, mut still) = ([false; 2], 0);
         for _ in 0..130 {
@@ -123,7 +123,7 @@ fn the_place_follows_what_is_asked_no_faster_than_an_edge_allows() {
     let (course, mut rng) = (Course::new(nodes.to_vec(), vec![vec![0, 1]]), Rng::new(3, 1));
     let mut moved = 0.0;
     for _ in 0..50 {
-        let mut command = Command::start(&config, &course, &mut rng);
+        let mut command = Command::start(&config, &course, false, &mut rng);
         command.aim(&config, &course, (Vec2::ZERO, 0.0), &mut rng);
         for tick in 0..300 {
             let (before, position) = (command.place.t, Vec2::splat(tick as f32));
@@ -136,4 +136,20 @@ fn the_place_follows_what_is_asked_no_faster_than_an_edge_allows() {
         }
     }
     assert!(moved > 50.0, "{moved}");
+}
+
+#[test]
+fn who_starts_at_a_node_rests_there_or_goes_to_others() {
+    let config = EnvironmentConfig { sweep: 1.0, jump: 0.0, ..EnvironmentConfig::default() };
+    let (course, mut rng) = (edge(), Rng::new(9, 1));
+    let (mut resting, mut at) = (0, [0; 2]);
+    for _ in 0..200 {
+        let mut command = Command::start(&config, &course, true, &mut rng);
+        at[course.node_at(command.place).expect("at a node")] += 1;
+        let before = command.place;
+        (0..30).for_each(|_| command.advance(&config, &course, Vec2::ZERO, |_| false, &mut rng));
+        resting += usize::from(command.place == before);
+        assert!(!command.sweeps);
+    }
+    assert!((100..180).contains(&resting) && at.iter().all(|count| *count > 30), "{resting} {at:?}");
 }

@@ -45,6 +45,20 @@ pub struct Start {
     /// Share of episodes that start some second before an earlier failure of the same character, with the command it had
     /// then: what goes wrong once in a minute is met often.
     pub mishap: f32,
+    /// Episodes, of skills trained together, that start where an episodic skill hands over to a node of the course, after it
+    /// raised a character that was dropped limp.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub after: Option<After>,
+}
+
+/// Starts where an episodic skill hands over.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct After {
+    /// The skill, by its name in the plan of the pack.
+    pub skill: String,
+    /// Share of episodes.
+    pub share: f32,
 }
 
 /// Settings of the environment.
@@ -68,8 +82,12 @@ pub struct EnvironmentConfig {
     /// trained together. It says how low to be between an upright gait and one on the ground.
     pub height: f32,
     /// Weight of the reward for imitating the clip tick by tick from where the episode starts in it; above zero an episode
-    /// fails when it has lost the clip and times out at the clip's end.
+    /// fails when it has lost the clip and times out at the clip's end. Of skills trained together, what imitators get beside
+    /// the rewards for style and task.
     pub imitation: f32,
+    /// Share of episodes, of skills trained together, that start at a node and whose character imitates the clips of every
+    /// node that it rests at, from the moment on that it is most like.
+    pub imitators: f32,
     /// When an episode fails.
     pub fall: Fall,
     /// Factor on the heights of the fall rule; less than 1 for low gaits.
@@ -117,6 +135,7 @@ impl Default for EnvironmentConfig {
             task: Task::Target,
             height: 0.0,
             imitation: 0.0,
+            imitators: 0.0,
             fall: Fall::Upright,
             fall_height: 1.0,
             fall_cost: 0.0,

@@ -135,10 +135,12 @@ impl Course {
 
     /// A random coordinate of a path: half of them at a node, by the nodes' shares, half anywhere.
     pub fn draw(&self, path: usize, rng: &mut Rng) -> f32 {
+        if rng.chance(0.5) { rng.uniform() * self.end(path) } else { self.draw_node(path, rng) }
+    }
+
+    /// The coordinate of a random node of a path, by the nodes' shares.
+    pub fn draw_node(&self, path: usize, rng: &mut Rng) -> f32 {
         let nodes = &self.paths[path];
-        if rng.chance(0.5) {
-            return rng.uniform() * self.end(path);
-        }
         let total: f32 = nodes.iter().map(|n| self.nodes[*n].share).sum();
         let mut left = rng.uniform() * total;
         let drawn = nodes.iter().position(|n| {
@@ -185,6 +187,13 @@ impl Course {
         FallRule::between(self.edges[place.edge].map(|node| self.nodes[node].fall), place.t)
     }
 
+    /// The node that a place is at, if it is not between two.
+    #[must_use]
+    pub fn node_at(&self, place: Place) -> Option<usize> {
+        let end = [0.0, 1.0].iter().position(|t| *t == place.t)?;
+        Some(self.edges[place.edge][end])
+    }
+
     /// The node that weighs most.
     #[must_use]
     pub fn nearest(&self, place: Place) -> usize {
@@ -210,10 +219,11 @@ impl Course {
         if self.nodes.len() <= 2 { 1 } else { self.nodes.len() }
     }
 
-    /// Numbers that a critic sees beside the policy's input: the place and, on one of several edges, where it is going.
+    /// Numbers that a critic sees beside the policy's input: the place and, on one of several edges, where it is going and
+    /// whether a clip is imitated there.
     #[must_use]
     pub fn context_len(&self) -> usize {
-        self.place_len() + if self.edges.len() > 1 { INTENT_LEN } else { 0 }
+        self.place_len() + if self.edges.len() > 1 { INTENT_LEN + 1 } else { 0 }
     }
 
     /// Writes the numbers of [`Course::place_len`].
@@ -254,6 +264,8 @@ mod tests {
         assert_eq!(course.place(0, 0.25), course.place(1, 0.25));
         assert_eq!(course.place(1, 9.0), Place { edge: 2, t: 1.0 });
         assert!((course.speed_mps(course.place(0, 1.5)) - 2.0).abs() < 1e-6);
+        let nodes = [0.0, 0.5, 1.0, 1.5, 2.0].map(|coordinate| course.node_at(course.place(1, coordinate)));
+        assert_eq!(nodes, [Some(1), None, Some(0), None, Some(3)]);
     }
 
     #[test]

@@ -141,6 +141,19 @@ impl Demonstrations {
             .map(|source| &self.sources[source].likenesses[moment.index])
     }
 
+    /// The moment that a character is most like.
+    ///
+    /// # Panics
+    /// When there is no clip.
+    #[must_use]
+    pub fn nearest(&self, is: &Likeness) -> Moment {
+        let moments = self.sources.iter().enumerate().flat_map(|(source, s)| {
+            let every = s.likenesses.iter().enumerate().step_by(TICK_STRIDE);
+            every.map(move |(index, wanted)| (Moment { source, index }, is.reward(wanted)))
+        });
+        moments.max_by(|a, b| a.1.total_cmp(&b.1)).expect("demonstrations have a clip").0
+    }
+
     /// Draws a moment of a clip and writes the discriminator's input there.
     pub fn sample_into(&self, rng: &mut Rng, out: &mut [f32; DISCRIMINATOR_INPUT_LEN]) {
         let Moment { source, index } = self.draw(rng);

@@ -14,9 +14,9 @@ mod normalisers;
 mod population;
 mod reward;
 
-pub use agent::{Agent, Episode, PUSH_SECS};
+pub use agent::{Agent, Episode, PUSH_SECS, Recovery};
 pub use command::{Command, DT_SECS};
-pub use config::{EnvironmentConfig, Fall, Start, Task};
+pub use config::{After, EnvironmentConfig, Fall, Start, Task};
 pub use course::{Course, CourseNode, Place};
 pub use demonstrations::{Demonstrations, Moment, StartPose};
 pub use fallen::{FallRule, stands};

@@ -5,7 +5,8 @@ use physics_bridge::Model;
 use policy_core::{ActionScaling, DISCRIMINATOR_INPUT_LEN, DOF_COUNT, POLICY_INPUT_LEN};
 use rayon::prelude::*;
 
-use super::agent::{Agent, Episode};
+use super::agent::{Agent, Episode, Recovery};
+use super::command::INTENT_LEN;
 use super::config::EnvironmentConfig;
 use super::course::Course;
 use super::demonstrations::Demonstrations;
@@ -25,6 +26,8 @@ pub struct Stage<'a> {
     pub demonstrations: &'a [&'a Demonstrations],
     /// Other clips, for starts.
     pub start_demonstrations: Option<&'a Demonstrations>,
+    /// What raises characters that were dropped, for starts.
+    pub recovery: Option<&'a Recovery>,
     /// The graph's normalisers.
     pub normalisers: &'a Normalisers,
 }
@@ -204,4 +207,7 @@ fn write_input(agent: &Agent, stage: &Stage<'_>, row: &mut [f32]) {
     agent.input_into(stage, input);
     stage.course.place_into(agent.command.place, place);
     agent.command.intent_into(intent);
+    if let Some(last) = intent.get_mut(INTENT_LEN) {
+        *last = f32::from(u8::from(agent.imitates()));
+    }
 }

@@ -56,14 +56,22 @@ impl Recipe {
                 format!("{} and {}", env.push_secs, env.push_newton),
             ),
             (
-                self.paths.is_empty()
-                    || self
-                        .phases
-                        .iter()
-                        .all(|p| p.guide == 0.0 && p.imitation.unwrap_or(env.imitation) == 0.0),
-                "phases.imitation and guide",
+                self.paths.is_empty() || self.phases.iter().all(|p| p.guide == 0.0),
+                "phases.guide",
                 "none beside paths",
                 format!("{:?}", self.phases),
+            ),
+            (
+                env.start.after.as_ref().is_none_or(|after| unit(after.share) && !self.paths.is_empty()),
+                "environment.start.after",
+                "a share in [0, 1], beside paths",
+                format!("{:?}", env.start.after),
+            ),
+            (
+                unit(env.imitators) && (env.imitators == 0.0 || !self.paths.is_empty()),
+                "environment.imitators",
+                "a share, beside paths",
+                env.imitators.to_string(),
             ),
             (
                 self.phases.iter().all(|p| p.guide.is_finite() && p.guide >= 0.0),
@@ -75,7 +83,8 @@ impl Recipe {
             (
                 self.phases.iter().all(|p| {
                     let imitation = p.imitation.unwrap_or(env.imitation);
-                    unit(p.task) && imitation >= 0.0 && unit(p.task + imitation)
+                    let beside = if self.paths.is_empty() { imitation } else { 0.0 };
+                    unit(p.task) && unit(imitation) && unit(p.task + beside)
                 }),
                 "phases.task and imitation",
                 "weights in [0, 1] that sum to at most 1",
@@ -106,7 +115,7 @@ impl Recipe {
             (
                 self.phases.iter().all(|p| {
                     let imitates = p.imitation.unwrap_or(env.imitation) > 0.0;
-                    !imitates || p.mishap.unwrap_or(env.start.mishap) == 0.0
+                    !imitates || !self.paths.is_empty() || p.mishap.unwrap_or(env.start.mishap) == 0.0
                 }),
                 "mishap",
                 "none beside imitation: what was to be imitated is forgotten",

@@ -5,7 +5,7 @@ use policy_core::JointTargets;
 
 use super::super::demonstrations::StartPose;
 use super::super::population::Stage;
-use super::{Agent, own_clips};
+use super::{Agent, Imitated, own_clips};
 use crate::clip::placed;
 
 /// Characters on a terrain start this near to its middle, metres along each axis.
@@ -13,9 +13,6 @@ const TERRAIN_HALF_METRES: f32 = 25.0;
 
 /// Ticks of an episode that starts before a failure, at most: what it is about comes first.
 const MISHAP_TICKS: u32 = 120;
-
-/// Ticks for which a character that starts in another clip may be far from the one it is to imitate.
-const FREE_TICKS: u32 = 20;
 
 impl Agent {
     /// Chooses where the next episode starts: on flat ground at the origin, on a terrain anywhere near its middle.
@@ -32,7 +29,8 @@ impl Agent {
         let Some(past) = self.mishaps.take(&mut self.rng) else { return false };
         self.character.restore(&past.snapshot).expect("a snapshot of the same character");
         self.character.sense_into(&mut self.state);
-        (self.history, self.command, self.imitated) = (past.history, past.command, None);
+        (self.history, self.command) = (past.history, past.command);
+        (self.imitated, self.imitator) = (None, false);
         self.born_at = self.born_at.max(stage.config.episode_ticks.saturating_sub(MISHAP_TICKS));
         self.age = self.born_at;
         true
@@ -44,7 +42,8 @@ impl Agent {
         let nodes = stage.demonstrations.len();
         let node = match stage.start_demonstrations {
             Some(other) if self.rng.chance(start.other) => {
-                self.imitated = Some((own_clips(stage).draw_beginning(&mut self.rng), FREE_TICKS));
+                let beginning = own_clips(stage).draw_beginning(&mut self.rng);
+                self.imitated = Some(Imitated::from(nodes - 1, beginning, false));
                 return other.draw_start(&mut self.rng);
             }
             _ if self.rng.chance(start.anywhere) => self.rng.index(nodes),
@@ -55,7 +54,8 @@ impl Agent {
             _ => nodes - 1,
         };
         let start = stage.demonstrations[node].draw_start(&mut self.rng);
-        self.imitated = (node == nodes - 1).then_some((start.moment, 0));
+        self.imitated =
+            (self.imitator || node == nodes - 1).then(|| Imitated::from(node, start.moment, true));
         start
     }
 
