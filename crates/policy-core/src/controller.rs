@@ -179,7 +179,7 @@ impl Controller {
         let Some(mut progress) = self.report.skill else { return };
         let skill = &self.pack.skills()[progress.skill];
         let score = skill.discriminator.and_then(|d| self.judge.score(&self.pack, d, state));
-        let Some(end) = progress.tick(&skill.end, score, pelvis_height(state), dt) else {
+        let Some(end) = progress.tick(&skill.end, score, state.height_of(Body::Pelvis), dt) else {
             self.report.skill = Some(progress);
             return;
         };
@@ -188,8 +188,8 @@ impl Controller {
         self.place_at(GraphPosition::node(skill.returns_to));
         self.fall.reset();
         // A character that lies where its time to rise is over tries again at once.
-        let low =
-            fall_height(self.pack.graph(), self.report.position).is_some_and(|h| pelvis_height(state) < h);
+        let low = fall_height(self.pack.graph(), self.report.position)
+            .is_some_and(|h| state.height_of(Body::Pelvis) < h);
         if self.config.recover && low && self.pack.recovery() == Some(progress.skill) {
             self.start_skill(progress.skill);
         }
@@ -200,7 +200,7 @@ impl Controller {
             Some(_) => None,
             None => fall_height(self.pack.graph(), self.report.position),
         };
-        self.report.fallen = self.fall.tick(limit, pelvis_height(state), dt);
+        self.report.fallen = self.fall.tick(limit, state.height_of(Body::Pelvis), dt);
         if let (true, true, Some(recovery)) = (self.report.fallen, self.config.recover, self.pack.recovery())
         {
             self.start_skill(recovery);
@@ -249,7 +249,7 @@ impl Controller {
         let mut next = self.report.position;
         graph.travel(&mut next, self.report.goal, dt);
         let limits = [self.report.position, next].map(|position| fall_height(graph, position));
-        if !self.fall.holds_back(limits, pelvis_height(state), dt) {
+        if !self.fall.holds_back(limits, state.height_of(Body::Pelvis), dt) {
             self.report.position = next;
         }
     }
@@ -282,8 +282,4 @@ fn blend_at(position: GraphPosition) -> Blend {
 fn is_valid(blend: &Blend, policies: usize) -> bool {
     let terms = blend.terms();
     !terms.is_empty() && terms.iter().all(|t| t.policy < policies && t.weights.iter().all(|w| w.is_finite()))
-}
-
-fn pelvis_height(state: &CharacterState) -> f32 {
-    state.body(Body::Pelvis).position.z - state.ground_height
 }

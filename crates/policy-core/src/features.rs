@@ -46,7 +46,7 @@ pub fn discriminator_frame_into(state: &CharacterState, out: &mut [f32; FRAME_LE
     let pelvis = state.body(Body::Pelvis);
     let heading = Heading::from_rotation(pelvis.rotation);
     let mut cursor = Cursor { out, at: 0 };
-    cursor.push(pelvis.position.z - state.ground_height);
+    cursor.push(state.height_of(Body::Pelvis));
     let (x, z) = axes_xz(pelvis.rotation);
     cursor.push3(heading.heading_from_world(x));
     cursor.push3(heading.heading_from_world(z));

@@ -39,7 +39,7 @@ pub fn observe_into(state: &CharacterState, out: &mut [f32; OBSERVATION_LEN]) {
     let pelvis = state.body(Body::Pelvis);
     let heading = Heading::from_rotation(pelvis.rotation);
     let mut cursor = Cursor { out, at: 0 };
-    cursor.push(pelvis.position.z - state.ground_height);
+    cursor.push(state.height_of(Body::Pelvis));
     for body in &state.bodies[1..] {
         cursor.push3(heading.heading_from_world(body.position - pelvis.position));
     }

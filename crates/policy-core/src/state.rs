@@ -49,6 +49,12 @@ impl CharacterState {
         &self.bodies[body.index()]
     }
 
+    /// Height of the frame of `body` above the ground below the pelvis, metres.
+    #[must_use]
+    pub fn height_of(&self, body: Body) -> f32 {
+        self.body(body).position.z - self.ground_height
+    }
+
     /// True when every number is finite.
     #[must_use]
     pub fn is_finite(&self) -> bool {

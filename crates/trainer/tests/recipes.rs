@@ -164,7 +164,7 @@ fn a_character_that_starts_in_its_clip_is_like_it_until_it_loses_it() {
 }
 
 fn best_imitation(run: &mut Run) -> f64 {
-    let each = (0..100).map(|_| {
+    let each = (0..12).map(|_| {
         let population = run.advance().unwrap().population;
         population.imitation / population.ticks as f64
     });

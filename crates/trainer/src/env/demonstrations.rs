@@ -175,3 +175,36 @@ impl Demonstrations {
         StartPose { pose: source.motion.poses[index], frames, moment }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use std::path::Path;
+
+    use glam::{Quat, Vec3};
+    use policy_core::{BODY_COUNT, Body};
+
+    use super::*;
+
+    #[test]
+    fn the_nearest_moment_is_that_of_the_same_pose() {
+        let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../assets/humanoid.xml");
+        let model = Model::load(path).unwrap();
+        let mut clip = Clip {
+            name: "bow".into(),
+            looping: false,
+            times: (0..31).map(|i| i as f32 / 30.0).collect(),
+            root_positions: vec![Vec3::new(0.0, 0.0, 0.9); 31],
+            local_rotations: vec![[Quat::IDENTITY; BODY_COUNT]; 31],
+        };
+        for (i, rotations) in clip.local_rotations.iter_mut().enumerate() {
+            rotations[Body::Torso.index()] = Quat::from_rotation_y(0.04 * i as f32);
+        }
+        let plain = Normaliser::from_mean_and_deviation(&[0.0; FRAME_LEN], &[1.0; FRAME_LEN]).unwrap();
+        let clips = Demonstrations::from_clips(&[(clip, 1.0, false)], &model, &plain).unwrap();
+        for index in [0, 5 * TICK_STRIDE, 20 * TICK_STRIDE] {
+            let moment = Moment { source: 0, index };
+            assert_eq!(clips.nearest(clips.likenesses(moment)[0]), moment);
+            assert_eq!(clips.after(moment), Some(Moment { source: 0, index: index + TICK_STRIDE }));
+        }
+    }
+}

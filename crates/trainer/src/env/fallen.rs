@@ -25,7 +25,7 @@ const DOWN_METRES: f32 = 0.5;
 /// True when the pelvis is as high as that of one who stands.
 #[must_use]
 pub fn stands(state: &CharacterState) -> bool {
-    state.body(Body::Pelvis).position.z - state.ground_height > STANDING_METRES
+    state.height_of(Body::Pelvis) > STANDING_METRES
 }
 
 /// What counts as a fall at a place on a course.
@@ -64,13 +64,12 @@ impl FallRule {
     /// True when the character has fallen; `stood` tells whether it has [stood](stands) in this episode.
     #[must_use]
     pub fn is_broken_by(self, state: &CharacterState, stood: bool) -> bool {
-        let above = |body: Body| state.body(body).position.z - state.ground_height;
         match self {
             Self::Never => false,
-            Self::Again => stood && above(Body::Pelvis) < DOWN_METRES,
-            Self::Lying => above(Body::Pelvis) < LYING_METRES,
+            Self::Again => stood && state.height_of(Body::Pelvis) < DOWN_METRES,
+            Self::Lying => state.height_of(Body::Pelvis) < LYING_METRES,
             Self::Upright(factor) => {
-                LEAST_HEIGHTS.iter().any(|(body, height)| above(*body) < height * factor)
+                LEAST_HEIGHTS.iter().any(|(body, height)| state.height_of(*body) < height * factor)
             }
         }
     }

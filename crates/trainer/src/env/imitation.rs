@@ -35,7 +35,7 @@ impl Likeness {
         let pelvis = state.body(Body::Pelvis);
         let seen = pelvis.rotation.inverse();
         Self {
-            height: pelvis.position.z - state.ground_height,
+            height: state.height_of(Body::Pelvis),
             up: seen * Vec3::Z,
             velocity: seen * pelvis.linear_velocity,
             places: state.bodies.each_ref().map(|b| seen * (b.position - pelvis.position)),

@@ -20,7 +20,7 @@ impl RewardTerms {
     /// With a share of the task reward for a pelvis at a height above the ground, metres: `exp(-|error| / 0.15)`.
     #[must_use]
     pub fn with_height(self, state: &CharacterState, (share, metres): (f32, f32)) -> Self {
-        let height = state.body(Body::Pelvis).position.z - state.ground_height;
+        let height = state.height_of(Body::Pelvis);
         let reward = (-(height - metres).abs() / 0.15).exp();
         Self { task: (1.0 - share) * self.task + share * reward, ..self }
     }
@@ -66,9 +66,8 @@ const RISING_MPS: f32 = 1.2;
 /// Reward for standing: pelvis and head at their heights, trunk upright, still once it is up, without a leap.
 #[must_use]
 pub fn standing_reward(state: &CharacterState) -> RewardTerms {
-    let above = |body: Body| state.body(body).position.z - state.ground_height;
-    let pelvis = (above(Body::Pelvis) / 0.83).clamp(0.0, 1.0);
-    let head = (above(Body::Head) / 1.25).clamp(0.0, 1.0);
+    let pelvis = (state.height_of(Body::Pelvis) / 0.83).clamp(0.0, 1.0);
+    let head = (state.height_of(Body::Head) / 1.25).clamp(0.0, 1.0);
     let up = (state.body(Body::Torso).rotation * Vec3::Z).z.max(0.0);
     let speed = state.body(Body::Pelvis).linear_velocity.truncate().length();
     let height = 0.5 * (pelvis + head);

@@ -42,7 +42,7 @@ impl MotionReport {
         for (foot, share) in
             [(Body::LeftFoot, &mut report.left_stance), (Body::RightFoot, &mut report.right_stance)]
         {
-            let height = |s: &CharacterState| s.body(foot).position.z - s.ground_height;
+            let height = |s: &CharacterState| s.height_of(foot);
             let mut count = 0.0;
             for pair in states.windows(2) {
                 let (was, is) = (height(&pair[0]) < STANCE_METRES, height(&pair[1]) < STANCE_METRES);

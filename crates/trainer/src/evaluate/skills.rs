@@ -78,8 +78,7 @@ fn gets_up(model: &Model, pack: &Arc<CharacterPack>, skill: usize, seed: u64) ->
         if let Some((_, SkillEnd::Recognised)) = subject.controller.report().skill_ended {
             ended = Some(tick as f32 * DT_SECS);
         }
-        let up = subject.pelvis_height() > 0.65
-            && subject.state.body(Body::Head).position.z - subject.state.ground_height > 1.1;
+        let up = subject.pelvis_height() > 0.65 && subject.state.height_of(Body::Head) > 1.1;
         stood = if up { stood + DT_SECS } else { 0.0 };
     }
     // Up at the end, and so since five seconds after the drop.

@@ -103,7 +103,7 @@ impl Subject {
     /// Height of the pelvis above the ground, metres.
     #[must_use]
     pub fn pelvis_height(&self) -> f32 {
-        self.state.body(Body::Pelvis).position.z - self.state.ground_height
+        self.state.height_of(Body::Pelvis)
     }
 }
 

@@ -55,3 +55,71 @@ impl Agent {
         false
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use std::path::Path;
+    use std::sync::Arc;
+
+    use glam::{Quat, Vec3};
+    use physics_bridge::Model;
+    use policy_core::{BODY_COUNT, Body, CharacterPack, ControllerConfig};
+
+    use super::super::super::config::EnvironmentConfig;
+    use super::super::super::course::{Course, CourseNode};
+    use super::super::super::demonstrations::Demonstrations;
+    use super::super::super::normalisers::Normalisers;
+    use super::*;
+    use crate::Rng;
+    use crate::clip::Clip;
+
+    #[test]
+    fn the_skill_that_ships_hands_over_somebody_who_is_up() {
+        let assets = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../assets");
+        let model = Model::load(assets.join("humanoid.xml")).unwrap();
+        let pack = std::fs::read(assets.join("humanoid.pack.safetensors")).unwrap();
+        let pack = Arc::new(CharacterPack::from_bytes(&pack).unwrap());
+        let still = Clip {
+            name: "still".into(),
+            looping: false,
+            times: (0..30).map(|i| i as f32 / 30.0).collect(),
+            root_positions: vec![Vec3::new(0.0, 0.0, 0.9); 30],
+            local_rotations: vec![[Quat::IDENTITY; BODY_COUNT]; 30],
+        };
+        let normalisers = Normalisers {
+            observation: pack.tensors().observation_normaliser.clone(),
+            frame: pack.tensors().discriminator_normaliser.clone(),
+        };
+        let clips = Demonstrations::from_clips(&[(still, 1.0, false)], &model, &normalisers.frame).unwrap();
+        let config = EnvironmentConfig::default();
+        let nodes = ["walk", "idle"].map(|name| CourseNode::new(name, &config, 1.0)).to_vec();
+        let course = Course::new(nodes, vec![vec![1, 0]]);
+        let recovery = Recovery {
+            skill: pack.skill_named("get_up").unwrap(),
+            controller: Controller::with_config(
+                pack,
+                ControllerConfig { recover: false, ..Default::default() },
+            ),
+            node: 1,
+        };
+        let stage = Stage {
+            config: &config,
+            course: &course,
+            demonstrations: &[&clips, &clips],
+            start_demonstrations: None,
+            recovery: Some(&recovery),
+            normalisers: &normalisers,
+        };
+        let mut agent = Agent::new(&model, Rng::new(7, 0));
+        let mut up = 0;
+        for _ in 0..8 {
+            if agent.start_risen(&stage) {
+                assert!(agent.state.height_of(Body::Pelvis) > 0.7 && !agent.imitates());
+                assert_eq!(course.node_at(agent.command.place), Some(1));
+                up += 1;
+            }
+        }
+        assert!(up >= 6, "{up} of 8");
+        assert!(!agent.start_risen(&Stage { recovery: None, ..stage }));
+    }
+}
