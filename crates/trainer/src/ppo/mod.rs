@@ -4,6 +4,7 @@
 //! One thing is beyond the paper: policies are trained along the straight lines between them, each row acting with its own
 //! blend of the two ends of an edge; either end may be frozen.
 
+mod batch;
 mod config;
 mod gaussian;
 mod lane;
@@ -11,8 +12,9 @@ mod learner;
 mod rollout;
 mod update;
 
+pub use batch::BatchEvaluator;
 pub use config::PpoConfig;
 pub use gaussian::{kl_divergence, log_probability};
-pub use learner::{Actor, BatchEvaluator, Learner};
+pub use learner::{Actor, Learner};
 pub use rollout::{Done, Rollout};
 pub use update::UpdateReport;

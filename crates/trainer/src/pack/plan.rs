@@ -1,0 +1,88 @@
+//! What a pack is to hold, as a file has it.
+
+use std::path::Path;
+
+use policy_core::{EdgeEntry, PathEntry, SkillEntry};
+use serde::Deserialize;
+
+use super::BindError;
+
+/// What a pack is to hold: nodes, edges, paths and skills by name. A TOML file.
+#[derive(Clone, Debug, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct PackPlan {
+    /// Name of the character.
+    pub character: String,
+    /// Run in which policies of this pack were trained together; they come from there where it exists.
+    #[serde(default)]
+    pub joint: Option<String>,
+    /// Skill that brings a fallen character to its feet.
+    #[serde(default)]
+    pub recovery: Option<String>,
+    /// Nodes of the graph.
+    pub policies: Vec<PlannedPolicy>,
+    /// Its edges.
+    #[serde(default)]
+    pub edges: Vec<EdgeEntry>,
+    /// Its paths.
+    #[serde(default)]
+    pub paths: Vec<PathEntry>,
+    /// Its episodic skills.
+    #[serde(default)]
+    pub skills: Vec<SkillEntry>,
+}
+
+/// A node of the graph.
+#[derive(Clone, Debug, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct PlannedPolicy {
+    /// Name of the skill that was trained.
+    pub name: String,
+    /// Pelvis height below which the character has fallen, metres.
+    #[serde(default)]
+    pub fall_height: Option<f32>,
+    /// Speed it was trained for, metres per second.
+    #[serde(default)]
+    pub speed_mps: Option<f32>,
+}
+
+impl PackPlan {
+    /// Reads a plan.
+    ///
+    /// # Errors
+    /// When the file can't be read, or has unknown or missing fields.
+    pub fn load(path: &Path) -> Result<Self, BindError> {
+        let text = std::fs::read_to_string(path)
+            .map_err(|source| BindError::Io { path: path.to_owned(), source })?;
+        toml::from_str(&text).map_err(|e| BindError::Plan { path: path.to_owned(), message: e.to_string() })
+    }
+
+    /// The plan without skills that `trained` refuses: their nodes, edges and episodic skills go, paths close over
+    /// the gap while an edge still joins what remains, and paths of a single node go.
+    #[must_use]
+    pub fn only(mut self, trained: impl Fn(&str) -> bool) -> Self {
+        self.policies.retain(|p| trained(&p.name));
+        self.edges.retain(|e| e.nodes.iter().all(|n| trained(n)));
+        let edges = self.edges.clone();
+        let joined = |a: &str, b: &str| {
+            edges.iter().any(|e| e.nodes.iter().any(|n| n == a) && e.nodes.iter().any(|n| n == b))
+        };
+        for path in &mut self.paths {
+            let mut kept: Vec<String> = Vec::new();
+            for node in path.nodes.drain(..).filter(|n| trained(n)) {
+                match kept.last() {
+                    Some(last) if !joined(last, &node) => break,
+                    _ => kept.push(node),
+                }
+            }
+            path.nodes = kept;
+        }
+        self.paths.retain(|p| p.nodes.len() > 1);
+        self.skills.retain(|s| trained(&s.policy) && trained(&s.returns_to));
+        for skill in &mut self.skills {
+            skill.entry.retain(|n| trained(n));
+        }
+        self.recovery = self.recovery.filter(|r| self.skills.iter().any(|s| s.name == *r));
+        self
+    }
+}
