@@ -1,6 +1,7 @@
 //! Trains the policies of the graph: adversarial motion priors and PPO, with every skill pulled towards its parent.
 
 pub mod amp;
+pub mod average;
 pub mod checkpoint;
 pub mod clip;
 pub mod compare;

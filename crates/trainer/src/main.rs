@@ -45,6 +45,8 @@ enum Verb {
     Pack(cli::pack::Arguments),
     /// Keeps slim checkpoints of runs, and the normaliser, for others to go on from.
     Keep(cli::keep::Arguments),
+    /// Averages the policies of several checkpoints of one run.
+    Average(cli::average::Arguments),
     /// Measures a pack: survival, speed, get-up, roll, pushes.
     Evaluate(cli::evaluate::Arguments),
     /// Prints the cost of a control step beside that of larger networks.
@@ -68,6 +70,7 @@ fn main() -> Result<()> {
             cli::pack::run(&arguments.model()?, &arguments.normalisers()?, &checkpoint, verb)
         }
         Verb::Keep(verb) => cli::keep::run(&arguments.normalisers()?, &arguments.runs, &arguments.kept, verb),
+        Verb::Average(verb) => cli::average::run(verb),
         Verb::Evaluate(verb) => {
             let clips = arguments.clips().ok();
             cli::evaluate::run(&arguments.model()?, &arguments.recipes, clips.as_ref(), verb)

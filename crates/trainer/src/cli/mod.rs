@@ -1,5 +1,6 @@
 //! The verbs of the program.
 
+pub(crate) mod average;
 pub(crate) mod compare;
 pub(crate) mod evaluate;
 pub(crate) mod keep;
