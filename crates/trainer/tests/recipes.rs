@@ -189,6 +189,10 @@ fn imitators_are_like_the_clips_of_the_nodes_they_rest_at() {
     let mut all = recipe(both);
     all.environment.start.along = true;
     assert_eq!(best_imitation(&mut workplace.prepare(all.clone(), 1, false).unwrap()), 0.0);
+    // Those that are no imitators, here nearly surely all, are neither paid for it nor fail by it.
+    all.skill = "others".into();
+    (all.environment.imitators, all.environment.imitation) = (1e-9, 0.5);
+    assert_eq!(best_imitation(&mut workplace.prepare(all.clone(), 1, false).unwrap()), 0.0);
     all.skill = "again".into();
     (all.environment.imitators, all.environment.imitation) = (1.0, 0.5);
     let best = best_imitation(&mut workplace.prepare(all, 1, false).unwrap());
@@ -221,6 +225,7 @@ fn unknown_fields_and_senseless_values_are_named() {
     let together = good.replace("clips = [{ name = \"walk\" }]", "paths = [[\"a\", \"b\"]]");
     assert!(Recipe::parse(Path::new("x.toml"), &together).is_ok());
     assert!(parse(&together.replace("0.5", "0.5\nguide = 0.1")).contains("paths"));
+    assert!(parse(&together.replace("0.5", "0.5\nimitation = 0.1")).contains("paths"));
     assert!(parse(&format!("{good}[environment]\nimitators = 0.1\n")).contains("imitators"));
     let after = "[environment.start]\nafter = { skill = \"get_up\", share = 0.1 }\n";
     assert!(Recipe::parse(Path::new("x.toml"), &format!("{together}{after}")).is_ok());

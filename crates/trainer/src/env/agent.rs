@@ -110,7 +110,8 @@ impl Agent {
         }
         let at = (self.position(), self.heading().angle());
         self.command.aim(config, stage.course, at, &mut self.rng);
-        if limp || config.imitation == 0.0 {
+        // Of skills trained together only imitators imitate.
+        if limp || config.imitation == 0.0 || (config.imitators > 0.0 && !self.imitator) {
             self.imitated = None;
         }
     }

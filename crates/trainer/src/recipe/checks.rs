@@ -62,6 +62,14 @@ impl Recipe {
                 format!("{:?}", self.phases),
             ),
             (
+                self.paths.is_empty()
+                    || env.imitators > 0.0
+                    || self.phases.iter().all(|p| p.imitation.unwrap_or(env.imitation) == 0.0),
+                "phases.imitation",
+                "none beside paths without imitators",
+                format!("{:?}", self.phases),
+            ),
+            (
                 env.start.after.as_ref().is_none_or(|after| unit(after.share) && !self.paths.is_empty()),
                 "environment.start.after",
                 "a share in [0, 1], beside paths",
