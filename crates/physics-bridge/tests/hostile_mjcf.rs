@@ -20,11 +20,11 @@ fn assert_says(error: &str, words: &[&str]) {
 #[test]
 fn malformed_xml_is_refused_with_its_line() {
     assert_says(&refused("</worldbody>", "</worldbdy>"), &["XML", "worldb"]);
-    assert_says(&refused("size=\".09\"", "sise=\".09\""), &["sise", "geom", "line 44"]);
+    assert_says(&refused("size=\".09\"", "sise=\".09\""), &["sise", "geom", "line 46"]);
     let long = "a".repeat(200);
     assert_says(
         &refused("<geom name=\"pelvis\"", &format!("<geom name=\"pelvis\" {long}=\"1\"")),
-        &["line 44"],
+        &["line 46"],
     );
     assert_says(&refused("<light", "<unknown"), &["unknown", "line"]);
     assert!(Model::from_mjcf("").is_err());

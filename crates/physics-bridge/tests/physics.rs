@@ -240,3 +240,34 @@ fn sensed_velocities_are_derivatives() {
         assert!((angular - body.angular_velocity).length() < 0.05, "{angular} against {body:?}");
     }
 }
+
+/// A step that the solver gives up on early can push a foot out of the ground at several metres per second.
+#[test]
+fn the_solver_brings_every_step_to_its_end() {
+    let option = |name: &str| {
+        let at = common::HUMANOID.find(&format!(" {name}=\"")).expect("an option of the model");
+        let value = &common::HUMANOID[at + name.len() + 3..];
+        format!(" {name}=\"{}\"", &value[..value.find('"').expect("the end of an attribute")])
+    };
+    let patient = common::HUMANOID
+        .replace(&option("iterations"), " iterations=\"500\"")
+        .replace(&option("ls_iterations"), " ls_iterations=\"500\"");
+    let mut patient = Character::new(&Model::from_mjcf(&patient).unwrap());
+    let mut character = Character::new(&humanoid());
+    let mut worst = 0.0_f64;
+    for tick in 0..3000 {
+        if tick % 60 == 0 {
+            character.stand_at(0.0, 0.0, Heading::FORWARD, 1.5).unwrap();
+        }
+        let (before, targets) = (character.pose(), wriggle(tick));
+        patient.set_pose(&before.qpos, &before.qvel).unwrap();
+        for each in [&mut character, &mut patient] {
+            each.actuate(&targets);
+            each.step().unwrap();
+        }
+        let (found, right) = (character.pose().qvel, patient.pose().qvel);
+        let apart = found.iter().zip(&right).take(3).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
+        worst = worst.max(apart);
+    }
+    assert!(worst < 0.05, "the pelvis is {worst} m/s too fast");
+}
