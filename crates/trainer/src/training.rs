@@ -219,6 +219,7 @@ impl Training {
                 self.rollout.inputs[at..at + POLICY_INPUT_LEN].copy_from_slice(&input[..POLICY_INPUT_LEN]);
                 self.rollout.edge[row] = agent.command.place.edge;
                 self.rollout.blend[row] = agent.command.place.t;
+                self.rollout.quiet[row] = agent.is_quiet();
             }
             self.learner.act(&mut self.rollout, step);
             let actions = &self.rollout.actions[rows.start * DOF_COUNT..rows.end * DOF_COUNT];

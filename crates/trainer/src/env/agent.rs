@@ -9,6 +9,7 @@ use policy_core::{
 
 use self::imitate::{Imitated, own_clips};
 use self::mishap::Mishaps;
+use self::noise::Noise;
 use super::command::{Command, DT_SECS};
 use super::config::{EnvironmentConfig, Task};
 use super::fallen::{FallRule, stands};
@@ -19,6 +20,7 @@ use crate::ppo::Done;
 
 mod imitate;
 mod mishap;
+mod noise;
 mod rise;
 mod start;
 
@@ -52,6 +54,7 @@ pub struct Agent {
     /// True when it imitates the clips of every node that it rests at.
     imitator: bool,
     mishaps: Mishaps,
+    noise: Noise,
     /// Ticks of the episode in which it stood.
     stood_ticks: u32,
 }
@@ -72,6 +75,7 @@ impl Agent {
             imitated: None,
             imitator: false,
             mishaps: Mishaps::default(),
+            noise: Noise::default(),
             stood_ticks: 0,
         }
     }
@@ -85,7 +89,9 @@ impl Agent {
         self.age = self.born_at;
         self.mishaps.begin();
         self.stood_ticks = 0;
-        if self.rng.chance(config.start.mishap) && self.start_before_failure(stage) {
+        let again = self.rng.chance(config.start.mishap) && self.start_before_failure(stage);
+        self.noise = Noise::begin(config, again, &mut self.rng);
+        if again {
             return;
         }
         self.choose_place();
@@ -171,6 +177,7 @@ impl Agent {
         let speed = (stage.course.speed_mps(place), stage.course.least_width_mps(place));
         let height = (config.height, stage.course.pelvis_metres(place));
         let terms = match config.task {
+            Task::Target if self.command.is_late() => RewardTerms::default(),
             Task::Target => target_reward(&self.state, velocity, self.command.target, speed)
                 .with_height(&self.state, height),
             Task::Stand => standing_reward(&self.state),
@@ -200,6 +207,13 @@ impl Agent {
         let position = self.position();
         let low = |rule: FallRule| rule.is_broken_by(&self.state, true);
         self.command.advance(stage.config, stage.course, position, low, &mut self.rng);
+        self.noise.tick(stage.config, &mut self.rng);
+    }
+
+    /// True while it is to act by the policy's mean, without noise.
+    #[must_use]
+    pub fn is_quiet(&self) -> bool {
+        self.noise.is_quiet()
     }
 
     /// Length of the episode so far and whether it failed.

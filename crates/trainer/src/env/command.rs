@@ -116,6 +116,12 @@ impl Command {
         self.rising_ticks as f32 * DT_SECS >= RISE_SECONDS
     }
 
+    /// True when it has been held back for longer than a rise at ease takes: what is asked for is not done.
+    #[must_use]
+    pub fn is_late(&self) -> bool {
+        self.rising_ticks as f32 * DT_SECS >= EASY_RISE_SECONDS
+    }
+
     /// Moves the command on by a tick. As in a game, the coordinate goes from where low is right to where it is not once the
     /// character has risen: once `low`, for the fall rule there, is false.
     pub fn advance(
@@ -197,6 +203,9 @@ impl Command {
         self.target = position + push * TARGET_RANGE_METRES * Vec2::from_angle(direction);
     }
 }
+
+/// Seconds that a rise takes at ease.
+const EASY_RISE_SECONDS: f32 = 1.0;
 
 const QUARTER: f32 = std::f32::consts::FRAC_PI_2;
 

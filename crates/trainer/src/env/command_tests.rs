@@ -94,6 +94,13 @@ fn who_comes_from_where_low_is_right_rises_first() {
         held = held.max(command.rising_ticks);
     }
     assert!((1..90).contains(&held) && !command.stuck(), "{held}");
+    // Asked to stay up, it is late after a second and stuck after three.
+    (command.sweeps, command.rate, command.asked) = (false, 0.0, 0.0);
+    (command.coordinate, command.place, command.rising_ticks) = (0.01, course.place(0, 0.01), 0);
+    for tick in 1..=95 {
+        command.advance(&config, &course, Vec2::ZERO, |_| true, &mut rng);
+        assert_eq!((command.is_late(), command.stuck()), (tick >= 30, tick >= 90), "{tick}");
+    }
 }
 
 #[test]

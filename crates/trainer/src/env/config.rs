@@ -85,6 +85,11 @@ pub struct EnvironmentConfig {
     /// fails when it has lost the clip and times out at the clip's end. Of skills trained together, what imitators get beside
     /// the rewards for style and task.
     pub imitation: f32,
+    /// Share of the time in which a character acts by the policy's mean alone, as in a game, in stretches; policies learn from
+    /// the rest, judges and critic from all of it.
+    pub quiet: f32,
+    /// Seconds of such a stretch, least and most.
+    pub quiet_secs: [f32; 2],
     /// Share of episodes, of skills trained together, that start at a node and whose character imitates the clips of every
     /// node that it rests at, from the moment on that it is most like.
     pub imitators: f32,
@@ -136,6 +141,8 @@ impl Default for EnvironmentConfig {
             height: 0.0,
             imitation: 0.0,
             imitators: 0.0,
+            quiet: 0.0,
+            quiet_secs: [0.5, 3.0],
             fall: Fall::Upright,
             fall_height: 1.0,
             fall_cost: 0.0,

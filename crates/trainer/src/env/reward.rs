@@ -32,7 +32,8 @@ const BRAKING_METRES: f32 = 1.0;
 /// Reward for going to `target` at `speed_mps` and facing it. `velocity` is that of the pelvis over the tick.
 ///
 /// `0.4 exp(-2 d) + 0.3 exp(-2 d / 9) + 0.3 facing` with `d = (e^2 + 0.25 s^2) / w^2`, speed error `e`, sideways speed `s`
-/// and a width `w` that grows with the commanded speed from `least_width` on, metres per second. The narrow bell makes the speed exact; the wide one gives a walk
+/// and a width `w`, metres per second, that grows with the commanded speed from `least_width` on, evenly below a walk and with
+/// the root above. The narrow bell makes the speed exact; the wide one gives a walk
 /// that is asked to run, or to stand, a slope to go down. Facing falls evenly from 1 to 0 straight behind, so that who goes
 /// the wrong way altogether gains by every degree too.
 #[must_use]
@@ -51,7 +52,8 @@ pub fn target_reward(
     let commanded_mps = speed_mps * near;
     let along = velocity.dot(direction);
     let sideways = velocity.perp_dot(direction);
-    let width = (commanded_mps / 1.25).sqrt().max(least_width);
+    let pace = commanded_mps / 1.25;
+    let width = pace.min(pace.sqrt()).max(least_width);
     let error = ((along - commanded_mps).powi(2) + 0.25 * sideways * sideways) / (width * width);
     // Close by, which way the target lies says nothing.
     let aside = facing_now.angle_to(direction).abs() / std::f32::consts::PI;
@@ -102,6 +104,13 @@ mod tests {
         let at =
             |speed: f32| target_reward(&state, Vec2::new(speed, 0.0), Vec2::new(5.0, 0.0), (0.0, 0.6)).task;
         assert!(at(1.2) - at(1.4) > 0.02, "{} {}", at(1.2), at(1.4));
+    }
+
+    #[test]
+    fn a_slow_gait_that_rests_misses_most_of_its_reward() {
+        let state = CharacterState::default();
+        let at = |speed: f32| target_reward(&state, Vec2::new(speed, 0.0), Vec2::new(5.0, 0.0), (0.34, 0.2));
+        assert!(at(0.34).task - at(0.0).task > 0.4, "{}", at(0.0).task);
     }
 
     #[test]

@@ -159,11 +159,15 @@ impl Learner {
         let rows = step * n..(step + 1) * n;
         let numbers = rows.start * actions..rows.end * actions;
         let input = &rollout.inputs[rows.start * inputs..rows.end * inputs];
+        let quiet = rows.clone();
         let (edge, blend) = (&rollout.edge[rows.clone()], &rollout.blend[rows]);
         self.means_into(input, edge, blend, &mut rollout.means[numbers.clone()]);
-        let pairs = rollout.actions[numbers.clone()].iter_mut().zip(&rollout.means[numbers]);
-        for (action, mean) in pairs {
-            *action = mean + self.config.deviation * self.rng.normal();
+        let means = rollout.means[numbers.clone()].chunks_exact(actions).zip(&rollout.quiet[quiet]);
+        for (action, (mean, quiet)) in rollout.actions[numbers].chunks_exact_mut(actions).zip(means) {
+            let deviation = if *quiet { 0.0 } else { self.config.deviation };
+            for (action, mean) in action.iter_mut().zip(mean) {
+                *action = mean + deviation * self.rng.normal();
+            }
         }
     }
 

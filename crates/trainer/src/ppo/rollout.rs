@@ -25,6 +25,8 @@ pub struct Rollout {
     pub edge: Vec<usize>,
     /// Blend weight every row acted with: 0 at the edge's first policy, 1 at its second.
     pub blend: Vec<f32>,
+    /// True for rows that act by the mean, without noise; no policy learns from them.
+    pub quiet: Vec<bool>,
     /// Inputs of the critic, `[rows][critic inputs]`: those of the policy and where on the course it acted.
     pub critic_inputs: Vec<f32>,
     /// Actions taken, `[rows][actions]`.
@@ -66,6 +68,7 @@ impl Rollout {
             inputs: vec![0.0; rows * inputs],
             edge: vec![0; rows],
             blend: vec![1.0; rows],
+            quiet: vec![false; rows],
             critic_inputs: vec![0.0; rows * critic_inputs],
             actions: vec![0.0; rows * actions],
             means: vec![0.0; rows * actions],
@@ -129,13 +132,16 @@ impl Rollout {
         }
     }
 
-    /// Shifts and scales the advantages to mean 0 and deviation 1.
+    /// Shifts and scales the advantages to mean 0 and deviation 1; those of quiet rows, which tried nothing, become 0.
     pub fn normalise_advantages(&mut self) {
-        let n = self.advantages.len() as f64;
-        let mean = self.advantages.iter().map(|a| f64::from(*a)).sum::<f64>() / n;
-        let variance = self.advantages.iter().map(|a| (f64::from(*a) - mean).powi(2)).sum::<f64>() / n;
+        let tried = || self.advantages.iter().zip(&self.quiet).filter(|(_, quiet)| !**quiet);
+        let n = tried().count().max(1) as f64;
+        let mean = tried().map(|(a, _)| f64::from(*a)).sum::<f64>() / n;
+        let variance = tried().map(|(a, _)| (f64::from(*a) - mean).powi(2)).sum::<f64>() / n;
         let deviation = variance.sqrt() + 1e-6;
-        self.advantages.iter_mut().for_each(|a| *a = ((f64::from(*a) - mean) / deviation) as f32);
+        for (a, quiet) in self.advantages.iter_mut().zip(&self.quiet) {
+            *a = if *quiet { 0.0 } else { ((f64::from(*a) - mean) / deviation) as f32 };
+        }
     }
 }
 
@@ -182,5 +188,15 @@ mod tests {
         assert_eq!(r.returns, [3.0, 30.0, 2.0, 20.0]);
         r.normalise_advantages();
         assert!(r.advantages.iter().sum::<f32>().abs() < 1e-5);
+    }
+
+    #[test]
+    fn quiet_rows_have_returns_but_no_advantage() {
+        let mut r = rollout(&[1.0, 5.0, 3.0], &[0.0; 3], &[Done::Failed; 3]);
+        r.quiet[1] = true;
+        r.estimate_advantages(0.9, 1.0, &[0.0], &[]);
+        r.normalise_advantages();
+        assert_eq!(r.returns, [1.0, 5.0, 3.0]);
+        assert!(r.advantages[1] == 0.0 && (r.advantages[0] + 1.0).abs() < 1e-5, "{:?}", r.advantages);
     }
 }

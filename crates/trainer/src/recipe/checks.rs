@@ -76,6 +76,12 @@ impl Recipe {
                 format!("{:?}", env.start.after),
             ),
             (
+                (0.0..1.0).contains(&env.quiet) && ordered(env.quiet_secs),
+                "environment.quiet and quiet_secs",
+                "a share below 1, and seconds from least to most",
+                format!("{} and {:?}", env.quiet, env.quiet_secs),
+            ),
+            (
                 unit(env.imitators) && (env.imitators == 0.0 || !self.paths.is_empty()),
                 "environment.imitators",
                 "a share, beside paths",
