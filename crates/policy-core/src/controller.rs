@@ -259,7 +259,7 @@ impl Controller {
         self.report.blend = match (self.report.skill, manual) {
             (Some(progress), _) => Blend::single(self.pack.skills()[progress.skill].policy),
             (None, Some(blend)) => blend,
-            (None, None) => blend_at(self.report.position),
+            (None, None) => blend_at(self.fall.place_to_act(self.report.position)),
         };
         if let (BlendMode::Switch, Some(policy)) = (command.mode, self.report.blend.strongest()) {
             self.report.blend = Blend::single(policy);

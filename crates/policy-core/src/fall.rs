@@ -12,6 +12,13 @@ const RISEN_METRES: f32 = 0.1;
 /// Seconds that a rise may take, out of where low is right, before it counts as a fall.
 pub const RISE_SECONDS: f32 = 3.0;
 
+/// Seconds after which a rise that has not come off takes a run-up, and how long one lasts.
+const RUN_UP_AFTER_SECONDS: f32 = 0.8;
+const RUN_UP_SECONDS: f32 = 1.1;
+
+/// How far back along the edge a run-up goes.
+const RUN_UP: f32 = 0.6;
+
 /// Watches one character.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct FallDetector {
@@ -46,10 +53,49 @@ impl FallDetector {
         holds
     }
 
+    /// Where on the graph a character acts that is held back at `position`: there, and after a while to and fro along the edge. A
+    /// deterministic policy that has come to rest half-way up stays there for good; what moves it is another policy.
+    pub(crate) fn place_to_act(&self, position: GraphPosition) -> GraphPosition {
+        let late = self.rising_seconds - RUN_UP_AFTER_SECONDS;
+        if late <= 0.0 || position.as_node().is_some() {
+            return position;
+        }
+        let back = 0.5 * RUN_UP * (1.0 - libm::cosf(core::f32::consts::TAU * late / RUN_UP_SECONDS));
+        let t = if position.t < 0.5 { position.t + back } else { position.t - back };
+        GraphPosition { t: t.clamp(0.0, 1.0), ..position }
+    }
+
     /// Takes the pelvis' height above the ground; true while the character has fallen.
     pub(crate) fn tick(&mut self, limit: Option<f32>, pelvis_height: f32, dt_secs: f32) -> bool {
         let low = limit.is_some_and(|limit| pelvis_height < limit);
         self.low_seconds = if low { self.low_seconds + dt_secs } else { 0.0 };
         self.low_seconds >= FALL_SECONDS || self.rising_seconds >= RISE_SECONDS
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_late_rise_goes_back_and_comes_again_and_its_time_runs_on() {
+        let mut fall = FallDetector::default();
+        let held = GraphPosition { from: 4, to: 5, t: 0.01 };
+        let mut places = alloc::vec::Vec::new();
+        let mut ticks = 0;
+        while !fall.tick(None, 0.3, 0.1) {
+            assert!(fall.holds_back([Some(0.2), Some(0.4)], 0.3, 0.1));
+            places.push(fall.place_to_act(held).t);
+            ticks += 1;
+        }
+        assert!((29..=31).contains(&ticks), "{ticks}");
+        assert!(places[..7].iter().all(|t| *t == held.t), "{places:?}");
+        let furthest = places.iter().copied().fold(0.0, f32::max);
+        assert!(furthest > 0.55 && furthest < 0.62, "{furthest}");
+        assert!(places[18] < 0.05, "up again after a run-up: {places:?}");
+        let other_way = fall.place_to_act(GraphPosition { from: 5, to: 4, t: 0.99 });
+        assert!(other_way.t <= 0.99);
+        assert!(!fall.holds_back([Some(0.4), Some(0.4)], 0.9, 0.1));
+        assert_eq!(fall.place_to_act(held), held);
     }
 }
