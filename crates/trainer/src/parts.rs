@@ -124,7 +124,9 @@ impl Workplace {
             let pelvis_metres = skill.demonstrations.pelvis_metres();
             let node = CourseNode::new(name, &skill.recipe.environment, 1.0);
             nodes.push(CourseNode { task, pelvis_metres, ..node });
-            actors.push(Actor::learning(skill.actor, skill.recipe.parent.as_ref().and_then(index)));
+            let parent = skill.recipe.parent.as_ref().and_then(index);
+            let frozen = recipe.frozen.contains(name);
+            actors.push(Actor { frozen, ..Actor::learning(skill.actor, parent) });
             let known = Some(skill.discriminator);
             let learner = DiscriminatorLearner::new(recipe.discriminator.clone(), known, seed, 10 + i as u64);
             judges.push(Judge { demonstrations: skill.demonstrations, discriminator: Some(learner) });

@@ -30,6 +30,9 @@ pub struct Recipe {
     /// Without it the middle is judged by both ends, and stopping and going by turns suits both.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub halfway: Vec<[String; 2]>,
+    /// Skills of those paths that stay as they are; the others learn to blend with them.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub frozen: Vec<String>,
     /// Demonstration clips.
     #[serde(default)]
     pub clips: Vec<ClipShare>,

@@ -1,6 +1,9 @@
 //! What a run's characters act in.
 
-use crate::env::{Course, Demonstrations, EnvironmentConfig, Normalisers, Place, Recovery, Stage};
+use crate::env::{
+    Course, Demonstrations, EnvironmentConfig, Normalisers, Place, Recovery, RewardTerms, Stage,
+};
+use crate::ppo::Done;
 
 /// What the characters of a run act in, beside the clips that the judges hold.
 #[derive(Debug)]
@@ -30,6 +33,13 @@ impl Setting {
             recovery: self.recovery.as_ref(),
             normalisers: &self.normalisers,
         }
+    }
+
+    /// Reward of a tick, without that for style.
+    pub(crate) fn reward(&self, place: Place, terms: &RewardTerms, end: Done) -> f32 {
+        let fall = if end == Done::Failed { self.environment.fall_cost } else { 0.0 };
+        let cost = fall + self.environment.slide_cost * terms.slide_mps;
+        self.task_share(place) * terms.task + self.environment.imitation * terms.imitation - cost
     }
 
     /// Weight of the task reward at a place.

@@ -6,7 +6,7 @@ use policy_core::{ActionScaling, DISCRIMINATOR_INPUT_LEN, DOF_COUNT, POLICY_INPU
 use crate::amp::DiscriminatorReport;
 use crate::env::{Course, Demonstrations, Normalisers, Place, Population, PopulationReport, Recovery};
 use crate::nn::{Adam, Network};
-use crate::ppo::{Done, Learner, Rollout, UpdateReport};
+use crate::ppo::{Learner, Rollout, UpdateReport};
 use crate::recipe::Recipe;
 use crate::setting::Setting;
 use crate::style::Judges;
@@ -230,9 +230,7 @@ impl Training {
             let at = self.rollout.edge[rows.clone()].iter().zip(&self.rollout.blend[rows.clone()]);
             let rewards = self.rollout.rewards[rows].iter_mut().zip(self.population.terms());
             for (((reward, terms), end), (edge, t)) in rewards.zip(self.population.ends()).zip(at) {
-                let share = self.setting.task_share(Place { edge: *edge, t: *t });
-                let cost = if *end == Done::Failed { self.setting.environment.fall_cost } else { 0.0 };
-                *reward = share * terms.task + self.setting.environment.imitation * terms.imitation - cost;
+                *reward = self.setting.reward(Place { edge: *edge, t: *t }, terms, *end);
             }
         }
         self.rollout.last_critic_inputs.copy_from_slice(&self.population.inputs);

@@ -11,19 +11,21 @@ use self::imitate::{Imitated, own_clips};
 use self::mishap::Mishaps;
 use self::noise::Noise;
 use super::command::{Command, DT_SECS};
-use super::config::{EnvironmentConfig, Task};
+use super::config::Task;
 use super::fallen::{FallRule, stands};
 use super::population::Stage;
 use super::reward::{RewardTerms, standing_reward, target_reward};
 use crate::Rng;
 use crate::ppo::Done;
 
+mod forces;
 mod imitate;
 mod mishap;
 mod noise;
 mod rise;
 mod start;
 
+pub use self::forces::PUSH_SECS;
 pub use self::rise::Recovery;
 
 /// What a finished episode was.
@@ -182,6 +184,8 @@ impl Agent {
                 .with_height(&self.state, height),
             Task::Stand => standing_reward(&self.state),
         };
+        let upright = matches!(stage.course.fall(place), FallRule::Upright(_));
+        let terms = if config.slide_cost > 0.0 && upright { self.with_slide(terms) } else { terms };
         if diverged || !self.state.is_finite() || self.has_fallen(stage) {
             if !diverged && self.state.is_finite() {
                 self.mishaps.failed(&mut self.rng);
@@ -222,16 +226,6 @@ impl Agent {
         Episode { ticks: self.age - self.born_at, failed: done == Done::Failed }
     }
 
-    /// Now and then a push of 0.2 s on the pelvis, in a random horizontal direction.
-    fn push(&mut self, config: &EnvironmentConfig) {
-        if config.push_secs > 0.0 && self.rng.chance(DT_SECS / config.push_secs) {
-            let force = Vec2::from_angle(self.rng.angle()) * self.rng.uniform() * config.push_newton;
-            self.character
-                .push(Body::Pelvis, force.extend(0.0), PUSH_SECS)
-                .expect("the recipe's force was checked");
-        }
-    }
-
     fn has_fallen(&self, stage: &Stage<'_>) -> bool {
         stage.course.fall(self.command.place).is_broken_by(&self.state, self.stood_ticks >= STOOD_TICKS)
     }
@@ -242,6 +236,3 @@ const STOOD_TICKS: u32 = 5;
 
 /// Draws of a start state until one is none that fails at once; the last one is taken as it is.
 const START_TRIES: usize = 4;
-
-/// Length of a push, seconds.
-pub const PUSH_SECS: f32 = 0.2;

@@ -100,6 +100,8 @@ pub struct EnvironmentConfig {
     /// What a failure takes off the reward of its tick. What failing forgoes, some twenty to a hundred ticks of reward, weighs
     /// little beside style once falls are a minute apart.
     pub fall_cost: f32,
+    /// What feet that slide cost, each tick, for a metre per second of all the weight; where an upright body is right.
+    pub slide_cost: f32,
     /// Distance of new targets, metres, least and most.
     pub target_metres: [f32; 2],
     /// Seconds until a target is renewed, least and most.
@@ -146,6 +148,7 @@ impl Default for EnvironmentConfig {
             fall: Fall::Upright,
             fall_height: 1.0,
             fall_cost: 0.0,
+            slide_cost: 0.0,
             target_metres: [1.0, 10.0],
             target_secs: [2.0, 7.0],
             stop: 0.15,

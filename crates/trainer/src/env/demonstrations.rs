@@ -124,6 +124,12 @@ impl Demonstrations {
         (index < motion.poses.len()).then_some(Moment { index, ..moment })
     }
 
+    /// True when the clip of that moment begins anew where it ends.
+    #[must_use]
+    pub fn loops(&self, moment: Moment) -> bool {
+        self.sources[moment.source].motion.looping
+    }
+
     /// Joint angles that motors without lag would need now to be at the clip's pose a tick later: those of the pose that lies
     /// ahead by the time constant of the joints, damping over gain, and half a tick.
     #[must_use]
@@ -134,11 +140,16 @@ impl Demonstrations {
         std::array::from_fn(|joint| pose.qpos[7 + joint] as f32)
     }
 
-    /// What an imitation is held against: that moment, and the same of the clip's mirror image.
+    /// What an imitation is held against at that moment.
     #[must_use]
-    pub fn likenesses(&self, moment: Moment) -> [&Likeness; 2] {
-        [moment.source, self.sources[moment.source].mirror]
-            .map(|source| &self.sources[source].likenesses[moment.index])
+    pub fn likeness(&self, moment: Moment) -> &Likeness {
+        &self.sources[moment.source].likenesses[moment.index]
+    }
+
+    /// The same moment of the clip's mirror image; the moment itself of a clip that is taken one way round only.
+    #[must_use]
+    pub fn mirrored(&self, moment: Moment) -> Moment {
+        Moment { source: self.sources[moment.source].mirror, ..moment }
     }
 
     /// The moment that a character is most like.
@@ -203,7 +214,8 @@ mod tests {
         let clips = Demonstrations::from_clips(&[(clip, 1.0, false)], &model, &plain).unwrap();
         for index in [0, 5 * TICK_STRIDE, 20 * TICK_STRIDE] {
             let moment = Moment { source: 0, index };
-            assert_eq!(clips.nearest(clips.likenesses(moment)[0]), moment);
+            assert_eq!(clips.nearest(clips.likeness(moment)), moment);
+            assert_eq!(clips.mirrored(moment), moment);
             assert_eq!(clips.after(moment), Some(Moment { source: 0, index: index + TICK_STRIDE }));
         }
     }

@@ -49,15 +49,17 @@ impl Likeness {
         self.height
     }
 
-    /// Reward in [0, 1] for being like `wanted`: 0.45 for the pose, 0.35 for height and lean of the pelvis, 0.2 for the
-    /// velocities, each an exponential of a distance and not of its square, so that far away still has a slope.
+    /// Reward in [0, 1] for being like `wanted`: 0.45 for the pose, 0.3 for height and lean of the pelvis, 0.25 for the
+    /// velocities, each by exponentials of a distance and not of its square, so that far away still has a slope; a narrow one
+    /// beside a wide one for pose and velocities, so that a slow gait can't be had by standing still.
     #[must_use]
     pub fn reward(&self, wanted: &Self) -> f32 {
-        let pose = (-rms(&self.places, &wanted.places) / 0.2).exp();
+        let apart = rms(&self.places, &wanted.places);
+        let pose = 0.25 * (-apart / 0.2).exp() + 0.2 * (-apart / 0.06).exp();
         let trunk = (-(self.height - wanted.height).abs() / 0.3 - self.up.distance(wanted.up)).exp();
         let moving =
             rms(&self.velocities, &wanted.velocities) + 0.5 * self.velocity.distance(wanted.velocity);
-        0.45 * pose + 0.35 * trunk + 0.2 * (-moving / 3.0).exp()
+        pose + 0.3 * trunk + 0.1 * (-moving / 3.0).exp() + 0.15 * (-moving / 0.6).exp()
     }
 
     /// True when it is so far from `wanted` that going on teaches nothing.

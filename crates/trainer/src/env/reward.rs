@@ -1,6 +1,7 @@
 //! Task rewards, pure functions of what happened in a tick. All lie in [0, 1].
 
 use glam::{Vec2, Vec3};
+use physics_bridge::Contact;
 use policy_core::{Body, CharacterState, Heading};
 
 /// What a tick was worth, before the weights of a phase.
@@ -14,6 +15,8 @@ pub struct RewardTerms {
     pub speed_mps: f32,
     /// Speed commanded, metres per second.
     pub commanded_mps: f32,
+    /// How fast the feet slide, see [`slide_mps`].
+    pub slide_mps: f32,
 }
 
 impl RewardTerms {
@@ -24,6 +27,23 @@ impl RewardTerms {
         let reward = (-(height - metres).abs() / 0.15).exp();
         Self { task: (1.0 - share) * self.task + share * reward, ..self }
     }
+}
+
+/// How fast the feet slide over what they stand on, metres per second, weighed by the share of the character's weight that
+/// presses there; at most 1. Sliding is easy for a policy and cheap by every other reward, but no creature walks like that.
+#[must_use]
+pub fn slide_mps(state: &CharacterState, contacts: &[Contact], weight_newton: f32) -> f32 {
+    let feet = contacts.iter().filter(|c| matches!(c.body, Body::LeftFoot | Body::RightFoot));
+    let sum: f32 = feet
+        .map(|contact| {
+            let foot = state.body(contact.body);
+            let arm = contact.position - foot.position;
+            let velocity = foot.linear_velocity + foot.angular_velocity.cross(arm);
+            let along = velocity - contact.normal * velocity.dot(contact.normal);
+            along.length() * contact.force.dot(contact.normal).max(0.0)
+        })
+        .sum();
+    (sum / weight_newton).min(1.0)
 }
 
 /// Within this distance of the target the commanded speed falls to zero, metres.
@@ -53,7 +73,7 @@ pub fn target_reward(
     let along = velocity.dot(direction);
     let sideways = velocity.perp_dot(direction);
     let pace = commanded_mps / 1.25;
-    let width = pace.min(pace.sqrt()).max(least_width);
+    let width = (0.6 * pace.min(pace.sqrt())).max(least_width);
     let error = ((along - commanded_mps).powi(2) + 0.25 * sideways * sideways) / (width * width);
     // Close by, which way the target lies says nothing.
     let aside = facing_now.angle_to(direction).abs() / std::f32::consts::PI;
@@ -136,6 +156,28 @@ mod tests {
         };
         assert!(at(0.2) - at(0.1) > 0.05, "{} {}", at(0.2), at(0.1));
         assert!((at(0.9) - 1.0).abs() < 1e-6);
+    }
+
+    #[test]
+    fn a_foot_that_slides_under_the_weight_costs_and_one_that_rolls_or_swings_does_not() {
+        let mut state = CharacterState::default();
+        let foot = &mut state.bodies[Body::LeftFoot.index()];
+        (foot.position, foot.linear_velocity) = (Vec3::new(0.0, 0.0, 0.05), Vec3::new(0.4, 0.3, 0.2));
+        let touch = |body, newton: f32| Contact {
+            body,
+            other: None,
+            position: Vec3::ZERO,
+            normal: Vec3::Z,
+            force: Vec3::new(50.0, 0.0, newton),
+            depth: 0.0,
+        };
+        let both = [touch(Body::LeftFoot, 240.0), touch(Body::LeftHand, 240.0)];
+        assert!((slide_mps(&state, &both, 480.0) - 0.25).abs() < 1e-6);
+        assert_eq!(slide_mps(&state, &[], 480.0), 0.0);
+        // The point that touches rests while the foot turns about it.
+        let foot = &mut state.bodies[Body::LeftFoot.index()];
+        (foot.linear_velocity, foot.angular_velocity) = (Vec3::new(0.4, 0.0, 0.0), Vec3::new(0.0, 8.0, 0.0));
+        assert!(slide_mps(&state, &both, 480.0) < 1e-6);
     }
 
     #[test]

@@ -36,6 +36,12 @@ impl Recipe {
                 format!("{:?}", self.paths),
             ),
             (
+                self.frozen.iter().all(|name| self.paths.iter().flatten().any(|n| n == name)),
+                "frozen",
+                "skills of the paths",
+                format!("{:?}", self.frozen),
+            ),
+            (
                 self.clips.iter().all(|c| positive(c.share)),
                 "clips.share",
                 "positive shares",
@@ -74,6 +80,12 @@ impl Recipe {
                 "environment.start.after",
                 "a share in [0, 1], beside paths",
                 format!("{:?}", env.start.after),
+            ),
+            (
+                env.slide_cost.is_finite() && env.slide_cost >= 0.0,
+                "environment.slide_cost",
+                "a weight of at least 0",
+                env.slide_cost.to_string(),
             ),
             (
                 (0.0..1.0).contains(&env.quiet) && ordered(env.quiet_secs),

@@ -12,6 +12,10 @@ use crate::ppo::Done;
 /// Ticks for which a character that did not start in the clip may be far from it.
 const FREE_TICKS: u32 = 20;
 
+/// Ticks after which a character that follows a cycle goes on from the moment that it is most like: a policy that is not
+/// told the time keeps its own pace.
+const PACE_TICKS: u32 = 60;
+
 /// What a character imitates.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Imitated {
@@ -21,25 +25,42 @@ pub(super) struct Imitated {
     moment: Moment,
     /// Ticks for which it may still be far from it.
     free_ticks: u32,
+    /// Ticks since the moment was chosen.
+    ticks: u32,
 }
 
 impl Imitated {
     /// From this moment of a node's clips on; at once, or after a while, like it.
     pub(super) fn from(node: usize, moment: Moment, at_once: bool) -> Self {
-        Self { node, moment, free_ticks: if at_once { 0 } else { FREE_TICKS } }
+        Self { node, moment, free_ticks: if at_once { 0 } else { FREE_TICKS }, ticks: 0 }
     }
 
     /// A tick later; `None` when the clip is over.
     fn next(self, clips: &Demonstrations) -> Option<Self> {
         let moment = clips.after(self.moment)?;
-        Some(Self { moment, free_ticks: self.free_ticks.saturating_sub(1), ..self })
+        Some(Self { moment, free_ticks: self.free_ticks.saturating_sub(1), ticks: self.ticks + 1, ..self })
     }
 
-    /// Reward for being like it or its mirror image, and whether it is lost.
+    /// The same, or after a while in a cycle the moment that the character is most like.
+    fn in_pace(self, is: &Likeness, clips: &Demonstrations) -> Self {
+        if self.ticks < PACE_TICKS || !clips.loops(self.moment) {
+            return self;
+        }
+        Self { moment: clips.nearest(is), ticks: 0, ..self }
+    }
+
+    /// The same, or its mirror image where that is nearer, as long as it may be far from it. From then on it keeps to one of
+    /// them: who may change over at every moment never has to put the other foot forward.
+    fn this_way_round(self, is: &Likeness, clips: &Demonstrations) -> Self {
+        let other = clips.mirrored(self.moment);
+        let nearer = is.reward(clips.likeness(other)) > is.reward(clips.likeness(self.moment));
+        if self.free_ticks > 0 && nearer { Self { moment: other, ..self } } else { self }
+    }
+
+    /// Reward for being like it, and whether it is lost.
     fn held_against(self, is: &Likeness, clips: &Demonstrations) -> (f32, bool) {
-        let [clip, mirrored] = clips.likenesses(self.moment);
-        let lost = self.free_ticks == 0 && is.is_lost(clip) && is.is_lost(mirrored);
-        (is.reward(clip).max(is.reward(mirrored)), lost)
+        let wanted = clips.likeness(self.moment);
+        (is.reward(wanted), self.free_ticks == 0 && is.is_lost(wanted))
     }
 }
 
@@ -68,9 +89,10 @@ impl Agent {
     pub(super) fn imitate(&mut self, stage: &Stage<'_>) -> (f32, Done) {
         let Some(imitated) = self.imitated else { return (0.0, Done::No) };
         let clips = stage.demonstrations[imitated.node];
-        self.imitated = imitated.next(clips);
+        let is = Likeness::of(&self.state);
+        self.imitated = imitated.next(clips).map(|now| now.in_pace(&is, clips).this_way_round(&is, clips));
         let Some(now) = self.imitated else { return (0.0, Done::TimedOut) };
-        let (reward, lost) = now.held_against(&Likeness::of(&self.state), clips);
+        let (reward, lost) = now.held_against(&is, clips);
         (reward, if lost { Done::Failed } else { Done::No })
     }
 
@@ -85,6 +107,7 @@ impl Agent {
         let is = Likeness::of(&self.state);
         let follow = self.imitated.filter(|before| before.node == node).and_then(|before| before.next(clips));
         let now = follow.unwrap_or_else(|| Imitated::from(node, clips.nearest(&is), false));
+        let now = now.in_pace(&is, clips).this_way_round(&is, clips);
         let (reward, lost) = now.held_against(&is, clips);
         self.imitated = (!lost).then_some(now);
         reward
