@@ -86,6 +86,8 @@ mod tests {
         while !fall.tick(None, 0.3, 0.1) {
             assert!(fall.holds_back([Some(0.2), Some(0.4)], 0.3, 0.1));
             places.push(fall.place_to_act(held).t);
+            let other_way = fall.place_to_act(GraphPosition { from: 5, to: 4, t: 0.99 });
+            assert!((other_way.t + places[ticks] - 1.0).abs() < 1e-5, "{other_way:?} {places:?}");
             ticks += 1;
         }
         assert!((29..=31).contains(&ticks), "{ticks}");

@@ -58,7 +58,13 @@ impl FallRule {
     /// True when a step from a place with this rule to one with the other has to wait for a rise.
     #[must_use]
     pub fn rises_to(self, to: Self) -> bool {
-        !matches!(self, Self::Upright(_)) && matches!(to, Self::Upright(_))
+        !self.is_upright() && to.is_upright()
+    }
+
+    /// True where only an upright body is right.
+    #[must_use]
+    pub fn is_upright(self) -> bool {
+        matches!(self, Self::Upright(_))
     }
 
     /// True when the character has fallen; `stood` tells whether it has [stood](stands) in this episode.

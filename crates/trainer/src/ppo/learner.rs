@@ -159,10 +159,9 @@ impl Learner {
         let rows = step * n..(step + 1) * n;
         let numbers = rows.start * actions..rows.end * actions;
         let input = &rollout.inputs[rows.start * inputs..rows.end * inputs];
-        let quiet = rows.clone();
-        let (edge, blend) = (&rollout.edge[rows.clone()], &rollout.blend[rows]);
+        let (edge, blend) = (&rollout.edge[rows.clone()], &rollout.blend[rows.clone()]);
         self.means_into(input, edge, blend, &mut rollout.means[numbers.clone()]);
-        let means = rollout.means[numbers.clone()].chunks_exact(actions).zip(&rollout.quiet[quiet]);
+        let means = rollout.means[numbers.clone()].chunks_exact(actions).zip(&rollout.quiet[rows]);
         for (action, (mean, quiet)) in rollout.actions[numbers].chunks_exact_mut(actions).zip(means) {
             let deviation = if *quiet { 0.0 } else { self.config.deviation };
             for (action, mean) in action.iter_mut().zip(mean) {
