@@ -76,9 +76,20 @@ impl Character {
     /// it is in the ground. Exact on flat ground, close on a terrain.
     #[must_use]
     pub fn clearance(&self) -> f32 {
+        self.clearance_where(|_| true)
+    }
+
+    /// The same of the lowest point of one body.
+    #[must_use]
+    pub fn clearance_of(&self, body: Body) -> f32 {
+        self.clearance_where(|other| other == body)
+    }
+
+    fn clearance_where(&self, counts: impl Fn(Body) -> bool) -> f32 {
         let (centres, matrices) = (self.data.geom_xpos(), self.data.geom_xmat());
         let mut clearance = f64::INFINITY;
-        for (shape, &geom) in self.model.shapes().iter().zip(self.model.shape_geoms()) {
+        let shapes = self.model.shapes().iter().zip(self.model.shape_geoms());
+        for (shape, &geom) in shapes.filter(|(shape, _)| counts(shape.body)) {
             // MuJoCo's matrices are row by row, glam's column by column.
             let world_from_shape = DMat3::from_cols_array(&matrices[geom]).transpose();
             shape.kind.low_points(DVec3::from(centres[geom]), world_from_shape, |point, below| {

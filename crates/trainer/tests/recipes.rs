@@ -195,8 +195,29 @@ fn imitators_are_like_the_clips_of_the_nodes_they_rest_at() {
     assert_eq!(best_imitation(&mut workplace.prepare(all.clone(), 1, false).unwrap()), 0.0);
     all.skill = "again".into();
     (all.environment.imitators, all.environment.imitation) = (1.0, 0.5);
-    let best = best_imitation(&mut workplace.prepare(all, 1, false).unwrap());
+    let best = best_imitation(&mut workplace.prepare(all.clone(), 1, false).unwrap());
     assert!((0.3..1.0).contains(&best), "{best}");
+
+    // Where nothing is near enough, who has lost the clip in the first tick is not found again in the next.
+    let strict = Workplace { recipes: folder.path().join("strict"), ..workplace.clone() };
+    std::fs::create_dir(&strict.recipes).unwrap();
+    for skill in ["walk", "idle"] {
+        let mut recipe = workplace.recipe(skill).unwrap();
+        recipe.environment.lost_metres = 1e-6;
+        let path = strict.recipes.join(format!("{skill}.toml"));
+        std::fs::write(path, toml::to_string(&recipe).unwrap()).unwrap();
+    }
+    all.skill = "strict".into();
+    let mut run = strict.prepare(all, 1, false).unwrap();
+    run.advance().unwrap();
+    let mut mean = || {
+        let reports = (0..6).map(|_| run.advance().unwrap().population);
+        let (imitation, ticks) =
+            reports.fold((0.0, 0.0), |sum, p| (sum.0 + p.imitation, sum.1 + p.ticks as f64));
+        imitation / ticks
+    };
+    let after_the_first_ticks = mean();
+    assert!(after_the_first_ticks < 0.1 * best, "{after_the_first_ticks} against {best}");
 }
 
 fn the_pack_acts_as_the_trainer(pack: &CharacterPack, ingredients: &[Ingredient]) {

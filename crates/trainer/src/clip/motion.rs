@@ -43,7 +43,7 @@ impl Motion {
         let dt = f64::from(clip.duration()) / intervals as f64;
         let count = if clip.looping { intervals } else { intervals + 1 };
         let mut fit = JointFit::new(limits);
-        let mut poses: Vec<Pose> = (0..count)
+        let poses = (0..count)
             .map(|i| {
                 let (position, rotations) = clip.sample((i as f64 * dt) as f32);
                 let angles = fit.angles(&rotations);
@@ -51,22 +51,30 @@ impl Motion {
             })
             .collect();
         let offset = if clip.looping { clip.cycle_offset().as_dvec3() } else { DVec3::ZERO };
-        for i in 0..count {
-            let (before, after, span) = neighbours(i, count, clip.looping);
-            let mut from = poses[before].qpos;
-            let mut to = poses[after].qpos;
-            shift(&mut from, offset * if before > i { -1.0 } else { 0.0 });
-            shift(&mut to, offset * if after < i { 1.0 } else { 0.0 });
-            poses[i].qvel = velocity(&from, &to, span * dt);
-        }
-        Ok(Self {
+        let mut motion = Self {
             name: clip.name.clone(),
             looping: clip.looping,
             poses,
             cycle_offset: [offset.x, offset.y],
             dt_secs: dt,
             outside_limits: fit.worst(),
-        })
+        };
+        motion.differentiate();
+        Ok(motion)
+    }
+
+    /// Works out the velocities of all poses from their positions.
+    pub fn differentiate(&mut self) {
+        let count = self.poses.len();
+        let offset = DVec3::new(self.cycle_offset[0], self.cycle_offset[1], 0.0);
+        for i in 0..count {
+            let (before, after, span) = neighbours(i, count, self.looping);
+            let mut from = self.poses[before].qpos;
+            let mut to = self.poses[after].qpos;
+            shift(&mut from, offset * if before > i { -1.0 } else { 0.0 });
+            shift(&mut to, offset * if after < i { 1.0 } else { 0.0 });
+            self.poses[i].qvel = velocity(&from, &to, span * self.dt_secs);
+        }
     }
 
     /// Index of the pose `ticks` control ticks before pose `index`; stops at the start of a clip that doesn't loop.

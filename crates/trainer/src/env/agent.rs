@@ -55,6 +55,8 @@ pub struct Agent {
     imitated: Option<Imitated>,
     /// True when it imitates the clips of every node that it rests at.
     imitator: bool,
+    /// Ticks until it looks for the clip that it has lost.
+    strayed_ticks: u32,
     mishaps: Mishaps,
     noise: Noise,
     /// Ticks of the episode in which it stood.
@@ -76,6 +78,7 @@ impl Agent {
             place: (0.0, 0.0),
             imitated: None,
             imitator: false,
+            strayed_ticks: 0,
             mishaps: Mishaps::default(),
             noise: Noise::default(),
             stood_ticks: 0,
@@ -90,7 +93,7 @@ impl Agent {
         self.born_at = self.rng.index(if first { ticks } else { ticks.div_ceil(4) }) as u32;
         self.age = self.born_at;
         self.mishaps.begin();
-        self.stood_ticks = 0;
+        (self.stood_ticks, self.strayed_ticks) = (0, 0);
         let again = self.rng.chance(config.start.mishap) && self.start_before_failure(stage);
         self.noise = Noise::begin(config, again, &mut self.rng);
         if again {
@@ -105,7 +108,12 @@ impl Agent {
         self.imitator = self.rng.chance(config.imitators);
         self.command = Command::start(config, stage.course, self.imitator, &mut self.rng);
         let limp = self.rng.chance(config.start.ragdoll);
-        for _ in 0..START_TRIES {
+        let launched = !limp && self.rng.chance(config.start.launched);
+        if launched {
+            self.launch(stage);
+        }
+        let tries = if launched { 0 } else { START_TRIES };
+        for _ in 0..tries {
             let start = self.draw_start(stage);
             if limp {
                 self.drop_limp(stage, &start);
@@ -119,7 +127,7 @@ impl Agent {
         let at = (self.position(), self.heading().angle());
         self.command.aim(config, stage.course, at, &mut self.rng);
         // Of skills trained together only imitators imitate.
-        if limp || config.imitation == 0.0 || (config.imitators > 0.0 && !self.imitator) {
+        if limp || launched || config.imitation == 0.0 || (config.imitators > 0.0 && !self.imitator) {
             self.imitated = None;
         }
     }
@@ -184,8 +192,8 @@ impl Agent {
                 .with_height(&self.state, height),
             Task::Stand => standing_reward(&self.state),
         };
-        let upright = matches!(stage.course.fall(place), FallRule::Upright(_));
-        let terms = if config.slide_cost > 0.0 && upright { self.with_slide(terms) } else { terms };
+        let slides = config.slide_cost > 0.0 && stage.course.fall(place).is_upright();
+        let terms = if slides { self.with_slide(terms) } else { terms };
         if diverged || !self.state.is_finite() || self.has_fallen(stage) {
             if !diverged && self.state.is_finite() {
                 self.mishaps.failed(&mut self.rng);

@@ -36,6 +36,8 @@ pub struct Start {
     pub other: f32,
     /// Those clips; the parent's when there are none.
     pub clips: Vec<String>,
+    /// Share of episodes that start in the pose of standing, set going at up to a walk's speed, as a game sets a character down.
+    pub launched: f32,
     /// True to start in the clips of the nodes around the place on the course, not in the skill's own alone.
     pub along: bool,
     /// Share of episodes that start in the clips of any node of the course.
@@ -85,6 +87,9 @@ pub struct EnvironmentConfig {
     /// fails when it has lost the clip and times out at the clip's end. Of skills trained together, what imitators get beside
     /// the rewards for style and task.
     pub imitation: f32,
+    /// Distance of the bodies from the clip's, seen from the pelvis, root mean square, at which it has lost the clip, metres. A
+    /// slow gait needs a small one, or who rests in one pose never loses it.
+    pub lost_metres: f32,
     /// Share of the time in which a character acts by the policy's mean alone, as in a game, in stretches; policies learn from
     /// the rest, judges and critic from all of it.
     pub quiet: f32,
@@ -143,6 +148,7 @@ impl Default for EnvironmentConfig {
             height: 0.0,
             imitation: 0.0,
             imitators: 0.0,
+            lost_metres: 0.35,
             quiet: 0.0,
             quiet_secs: [0.5, 3.0],
             fall: Fall::Upright,

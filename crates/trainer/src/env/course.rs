@@ -15,6 +15,8 @@ pub struct CourseNode {
     pub speed_mps: f32,
     /// Least width of the reward for its speed, metres per second.
     pub least_width_mps: f32,
+    /// Distance at which its clip is lost, see [`EnvironmentConfig::lost_metres`].
+    pub lost_metres: f32,
     /// What counts as a fall at it.
     pub fall: FallRule,
     /// How often episodes rest at it, beside the other nodes of a path.
@@ -41,6 +43,7 @@ impl CourseNode {
             name: name.into(),
             speed_mps: config.speed_mps,
             least_width_mps: config.least_width_mps,
+            lost_metres: config.lost_metres,
             fall,
             share,
             task: 1.0,

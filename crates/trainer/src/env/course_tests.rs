@@ -5,6 +5,7 @@ fn node(name: &str, speed_mps: f32) -> CourseNode {
         name: name.into(),
         speed_mps,
         least_width_mps: 0.6,
+        lost_metres: 0.35,
         fall: FallRule::Upright(1.0),
         share: 1.0,
         task: 1.0,

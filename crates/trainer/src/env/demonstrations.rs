@@ -165,6 +165,18 @@ impl Demonstrations {
         moments.max_by(|a, b| a.1.total_cmp(&b.1)).expect("demonstrations have a clip").0
     }
 
+    /// The moment of a cycle that a character is most like, at most so many control ticks before or after another one.
+    #[must_use]
+    pub fn nearest_around(&self, moment: Moment, ticks: usize, is: &Likeness) -> Moment {
+        let source = &self.sources[moment.source];
+        let len = source.likenesses.len();
+        let behind = (ticks * TICK_STRIDE).min(len / 2);
+        let around = (0..=2 * behind).step_by(TICK_STRIDE).map(|i| (moment.index + len - behind + i) % len);
+        let best = around
+            .max_by(|a, b| is.reward(&source.likenesses[*a]).total_cmp(&is.reward(&source.likenesses[*b])));
+        Moment { index: best.unwrap_or(moment.index), ..moment }
+    }
+
     /// Draws a moment of a clip and writes the discriminator's input there.
     pub fn sample_into(&self, rng: &mut Rng, out: &mut [f32; DISCRIMINATOR_INPUT_LEN]) {
         let Moment { source, index } = self.draw(rng);
@@ -216,6 +228,11 @@ mod tests {
             let moment = Moment { source: 0, index };
             assert_eq!(clips.nearest(clips.likeness(moment)), moment);
             assert_eq!(clips.mirrored(moment), moment);
+            let before = Moment { source: 0, index: index.saturating_sub(4 * TICK_STRIDE) };
+            assert_eq!(clips.nearest_around(before, 6, clips.likeness(moment)), moment);
+            if index > 0 {
+                assert_ne!(clips.nearest_around(before, 2, clips.likeness(moment)), moment);
+            }
             assert_eq!(clips.after(moment), Some(Moment { source: 0, index: index + TICK_STRIDE }));
         }
     }

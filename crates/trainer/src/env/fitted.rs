@@ -3,6 +3,7 @@
 use physics_bridge::{Character, Model, PoseError};
 use policy_core::CharacterState;
 
+use super::feet::put_on_ground;
 use crate::clip::{Clip, ClipError, JointLimits, Motion};
 
 /// Why clips can't be made ready.
@@ -37,13 +38,24 @@ pub struct Fitted {
     pub lift: f32,
 }
 
-/// Fits a clip and lifts it so that a fifth of its poses touch the ground or sink in.
+/// Fits a clip, keeps the tips of its feet out of the ground, and lifts it so that a fifth of its poses touch the ground or sink
+/// in.
 ///
 /// # Errors
 /// When the clip is too short or the physics refuses a pose.
 pub fn fit(clip: &Clip, model: &Model) -> Result<Fitted, SourceError> {
     let (low, high) = model.joint_limits();
-    let mut motion = Motion::fit(clip, JointLimits { low, high })?;
+    let limits = JointLimits { low, high };
+    let mut motion = Motion::fit(clip, limits)?;
+    let mut character = Character::new(model);
+    for (index, pose) in motion.poses.iter_mut().enumerate() {
+        put_on_ground(pose, &limits, &mut character).map_err(|source| SourceError::Pose {
+            clip: clip.name.clone(),
+            index,
+            source,
+        })?;
+    }
+    motion.differentiate();
     let mut lowest = states(&motion, model)?.1;
     lowest.sort_by(f32::total_cmp);
     let lift = -lowest[lowest.len() / 5];

@@ -19,10 +19,7 @@ pub struct Likeness {
     velocities: [Vec3; BODY_COUNT],
 }
 
-/// A character is lost when its bodies, seen from the pelvis, are this far from the clip's, root mean square, metres.
-const LOST_METRES: f32 = 0.35;
-
-/// Or its pelvis is this much higher or lower, metres.
+/// A character is lost when its pelvis is this much higher or lower than the clip's, metres.
 const LOST_HEIGHT_METRES: f32 = 0.35;
 
 /// Or leans this much another way: length of the difference of the verticals seen from the pelvis (1 is 60 degrees).
@@ -62,10 +59,11 @@ impl Likeness {
         pose + 0.3 * trunk + 0.1 * (-moving / 3.0).exp() + 0.15 * (-moving / 0.6).exp()
     }
 
-    /// True when it is so far from `wanted` that going on teaches nothing.
+    /// True when it is so far from `wanted` that going on teaches nothing: its bodies, seen from the pelvis, more than `metres`
+    /// in the root mean square, its pelvis at another height, or leaning another way.
     #[must_use]
-    pub fn is_lost(&self, wanted: &Self) -> bool {
-        rms(&self.places, &wanted.places) > LOST_METRES
+    pub fn is_lost(&self, wanted: &Self, metres: f32) -> bool {
+        rms(&self.places, &wanted.places) > metres
             || (self.height - wanted.height).abs() > LOST_HEIGHT_METRES
             || self.up.distance(wanted.up) > LOST_LEAN
     }
@@ -98,7 +96,7 @@ mod tests {
         let here = Likeness::of(&state(Quat::IDENTITY, Vec3::ZERO));
         let there = Likeness::of(&state(Quat::from_rotation_z(2.0), Vec3::new(3.0, -1.0, 0.0)));
         assert!((here.reward(&there) - 1.0).abs() < 1e-3, "{}", here.reward(&there));
-        assert!(!here.is_lost(&there));
+        assert!(!here.is_lost(&there, 0.35));
     }
 
     #[test]
@@ -111,12 +109,14 @@ mod tests {
             last = reward;
         }
         let leaning = Likeness::of(&state(Quat::from_rotation_y(1.3), Vec3::ZERO));
-        assert!(leaning.is_lost(&wanted) && leaning.reward(&wanted) < 0.9);
-        assert!(Likeness::of(&state(Quat::IDENTITY, 0.5 * Vec3::Z)).is_lost(&wanted));
+        assert!(leaning.is_lost(&wanted, 0.35) && leaning.reward(&wanted) < 0.9);
+        assert!(Likeness::of(&state(Quat::IDENTITY, 0.5 * Vec3::Z)).is_lost(&wanted, 0.35));
         let (mut bent, mut fast) = (state(Quat::IDENTITY, Vec3::ZERO), state(Quat::IDENTITY, Vec3::ZERO));
         bent.bodies[4].position.x += 0.5;
         fast.bodies[4].linear_velocity.x += 4.0;
         assert!(Likeness::of(&bent).reward(&wanted) < 0.8);
+        // One body of fifteen half a metre off is 0.129 m in the root mean square.
+        assert!(Likeness::of(&bent).is_lost(&wanted, 0.12) && !Likeness::of(&bent).is_lost(&wanted, 0.14));
         assert!(Likeness::of(&fast).reward(&wanted) < 0.95);
     }
 }

@@ -8,6 +8,7 @@ mod config;
 mod course;
 mod demonstrations;
 mod fallen;
+mod feet;
 mod fitted;
 mod imitation;
 mod normalisers;

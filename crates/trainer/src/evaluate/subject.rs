@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use glam::Vec2;
-use physics_bridge::{Character, Model};
+use physics_bridge::{Character, Model, WALKING_START_MPS};
 use policy_core::{
     BlendMode, Body, CharacterPack, CharacterState, Command, Controller, ControllerConfig, Goal,
     GraphPosition, Heading, TARGET_RANGE_METRES,
@@ -11,9 +11,6 @@ use policy_core::{
 
 use crate::Rng;
 use crate::env::DT_SECS;
-
-/// Speed at which an upright character is set going, metres per second.
-const START_MPS: f32 = 1.0;
 
 /// Seconds of walking before anything is measured.
 pub const SETTLE_SECS: f32 = 2.0;
@@ -72,7 +69,7 @@ impl Subject {
         self.controller.reset();
         let node = self.controller.report().position.nearest_node();
         let stands = self.controller.pack().graph().nodes()[node].speed_mps == Some(0.0);
-        let speed = if stands { 0.0 } else { START_MPS };
+        let speed = if stands { 0.0 } else { WALKING_START_MPS };
         self.character.stand_at(0.0, 0.0, heading, speed).expect("zeros are finite");
         self.character.sense_into(&mut self.state);
     }

@@ -148,10 +148,10 @@ impl Recipe {
                 env.start.mishap.to_string(),
             ),
             (
-                positive(env.least_width_mps),
-                "environment.least_width_mps",
-                "a positive speed",
-                env.least_width_mps.to_string(),
+                positive(env.least_width_mps) && positive(env.lost_metres),
+                "environment.least_width_mps and lost_metres",
+                "a positive speed and a positive distance",
+                format!("{} and {}", env.least_width_mps, env.lost_metres),
             ),
             (env.speed_mps.is_finite(), "environment.speed_mps", "a finite speed", env.speed_mps.to_string()),
             (
@@ -174,6 +174,7 @@ impl Recipe {
                     env.stick,
                     env.jump,
                     env.start.other,
+                    env.start.launched,
                     env.start.anywhere,
                     env.start.ragdoll,
                     env.start.mishap,

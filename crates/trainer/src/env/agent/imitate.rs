@@ -12,9 +12,18 @@ use crate::ppo::Done;
 /// Ticks for which a character that did not start in the clip may be far from it.
 const FREE_TICKS: u32 = 20;
 
-/// Ticks after which a character that follows a cycle goes on from the moment that it is most like: a policy that is not
-/// told the time keeps its own pace.
+/// The same for a cycle, which it may join at any moment: a change of stance takes longer than a beginning.
+const FREE_TICKS_OF_CYCLE: u32 = 45;
+
+/// Ticks after which a character that follows a cycle goes on from the moment that it is most like, of those around: a policy
+/// that is not told the time keeps its own pace.
 const PACE_TICKS: u32 = 60;
+
+/// Ticks before and after that count as around. Who could go on from any moment would never have to step.
+const AROUND_TICKS: usize = 15;
+
+/// Ticks for which a character that has lost the clip of a node is not held against it, nor rewarded.
+const STRAYED_TICKS: u32 = 30;
 
 /// What a character imitates.
 #[derive(Clone, Copy, Debug)]
@@ -30,9 +39,20 @@ pub(super) struct Imitated {
 }
 
 impl Imitated {
-    /// From this moment of a node's clips on; at once, or after a while, like it.
-    pub(super) fn from(node: usize, moment: Moment, at_once: bool) -> Self {
-        Self { node, moment, free_ticks: if at_once { 0 } else { FREE_TICKS }, ticks: 0 }
+    /// Like it from this moment of a node's clips on.
+    pub(super) fn at_once(node: usize, moment: Moment) -> Self {
+        Self { node, moment, free_ticks: 0, ticks: 0 }
+    }
+
+    /// From this moment of a node's clips on, and after a while like it.
+    pub(super) fn soon(node: usize, moment: Moment) -> Self {
+        Self { free_ticks: FREE_TICKS, ..Self::at_once(node, moment) }
+    }
+
+    /// From elsewhere into these clips of a node: to this beginning soon, or into a cycle wherever it is nearest after a while.
+    pub(super) fn into_clips(node: usize, beginning: Moment, clips: &Demonstrations) -> Self {
+        let free_ticks = if clips.loops(beginning) { FREE_TICKS_OF_CYCLE } else { FREE_TICKS };
+        Self { free_ticks, ..Self::at_once(node, beginning) }
     }
 
     /// A tick later; `None` when the clip is over.
@@ -41,26 +61,33 @@ impl Imitated {
         Some(Self { moment, free_ticks: self.free_ticks.saturating_sub(1), ticks: self.ticks + 1, ..self })
     }
 
-    /// The same, or after a while in a cycle the moment that the character is most like.
+    /// The same, or in a cycle the moment that the character is most like: any when it has to be like it from now on, one
+    /// around after a while.
     fn in_pace(self, is: &Likeness, clips: &Demonstrations) -> Self {
-        if self.ticks < PACE_TICKS || !clips.loops(self.moment) {
+        if !clips.loops(self.moment) || (self.ticks < PACE_TICKS && self.free_ticks != 1) {
             return self;
         }
-        Self { moment: clips.nearest(is), ticks: 0, ..self }
+        if self.free_ticks == 1 {
+            return Self { moment: clips.nearest(is), ticks: 0, ..self };
+        }
+        Self { moment: clips.nearest_around(self.moment, AROUND_TICKS, is), ticks: 0, ..self }
     }
 
     /// The same, or its mirror image where that is nearer, as long as it may be far from it. From then on it keeps to one of
     /// them: who may change over at every moment never has to put the other foot forward.
     fn this_way_round(self, is: &Likeness, clips: &Demonstrations) -> Self {
+        if self.free_ticks == 0 {
+            return self;
+        }
         let other = clips.mirrored(self.moment);
         let nearer = is.reward(clips.likeness(other)) > is.reward(clips.likeness(self.moment));
-        if self.free_ticks > 0 && nearer { Self { moment: other, ..self } } else { self }
+        if nearer { Self { moment: other, ..self } } else { self }
     }
 
     /// Reward for being like it, and whether it is lost.
-    fn held_against(self, is: &Likeness, clips: &Demonstrations) -> (f32, bool) {
+    fn held_against(self, is: &Likeness, clips: &Demonstrations, lost_metres: f32) -> (f32, bool) {
         let wanted = clips.likeness(self.moment);
-        (is.reward(wanted), self.free_ticks == 0 && is.is_lost(wanted))
+        (is.reward(wanted), self.free_ticks == 0 && is.is_lost(wanted, lost_metres))
     }
 }
 
@@ -89,27 +116,34 @@ impl Agent {
     pub(super) fn imitate(&mut self, stage: &Stage<'_>) -> (f32, Done) {
         let Some(imitated) = self.imitated else { return (0.0, Done::No) };
         let clips = stage.demonstrations[imitated.node];
+        let lost_metres = stage.course.nodes()[imitated.node].lost_metres;
         let is = Likeness::of(&self.state);
         self.imitated = imitated.next(clips).map(|now| now.in_pace(&is, clips).this_way_round(&is, clips));
         let Some(now) = self.imitated else { return (0.0, Done::TimedOut) };
-        let (reward, lost) = now.held_against(&is, clips);
+        let (reward, lost) = now.held_against(&is, clips, lost_metres);
         (reward, if lost { Done::Failed } else { Done::No })
     }
 
     /// Reward for being like the clips of the node that it rests at: from the moment that it is most like, wherever it came
-    /// from, and again so when it has lost it.
+    /// from, and again so a while after it has lost it. Without that while, who rests in one pose is found again and again.
     pub(super) fn imitate_node(&mut self, stage: &Stage<'_>) -> f32 {
         let Some(node) = stage.course.node_at(self.command.place) else {
             self.imitated = None;
             return 0.0;
         };
+        if self.strayed_ticks > 0 {
+            self.strayed_ticks -= 1;
+            return 0.0;
+        }
         let clips = stage.demonstrations[node];
+        let lost_metres = stage.course.nodes()[node].lost_metres;
         let is = Likeness::of(&self.state);
         let follow = self.imitated.filter(|before| before.node == node).and_then(|before| before.next(clips));
-        let now = follow.unwrap_or_else(|| Imitated::from(node, clips.nearest(&is), false));
+        let now = follow.unwrap_or_else(|| Imitated::soon(node, clips.nearest(&is)));
         let now = now.in_pace(&is, clips).this_way_round(&is, clips);
-        let (reward, lost) = now.held_against(&is, clips);
+        let (reward, lost) = now.held_against(&is, clips, lost_metres);
         self.imitated = (!lost).then_some(now);
+        self.strayed_ticks = if lost { STRAYED_TICKS } else { 0 };
         reward
     }
 }

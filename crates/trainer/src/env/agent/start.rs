@@ -1,7 +1,7 @@
 //! Where episodes start: in clips, in other clips, or limp on the ground.
 
-use physics_bridge::{Pose, Terrain};
-use policy_core::JointTargets;
+use physics_bridge::{Pose, Terrain, WALKING_START_MPS};
+use policy_core::{Heading, JointTargets};
 
 use super::super::demonstrations::StartPose;
 use super::super::population::Stage;
@@ -42,8 +42,9 @@ impl Agent {
         let nodes = stage.demonstrations.len();
         let node = match stage.start_demonstrations {
             Some(other) if self.rng.chance(start.other) => {
-                let beginning = own_clips(stage).draw_beginning(&mut self.rng);
-                self.imitated = Some(Imitated::from(nodes - 1, beginning, false));
+                let clips = own_clips(stage);
+                let beginning = clips.draw_beginning(&mut self.rng);
+                self.imitated = Some(Imitated::into_clips(nodes - 1, beginning, clips));
                 return other.draw_start(&mut self.rng);
             }
             _ if self.rng.chance(start.anywhere) => self.rng.index(nodes),
@@ -54,8 +55,7 @@ impl Agent {
             _ => nodes - 1,
         };
         let start = stage.demonstrations[node].draw_start(&mut self.rng);
-        self.imitated =
-            (self.imitator || node == nodes - 1).then(|| Imitated::from(node, start.moment, true));
+        self.imitated = (self.imitator || node == nodes - 1).then(|| Imitated::at_once(node, start.moment));
         start
     }
 
@@ -75,6 +75,17 @@ impl Agent {
         for frame in start.frames.iter() {
             *self.history.push() = *frame;
         }
+    }
+
+    /// Stands the character up in a random heading, going that way at up to a walk's speed.
+    pub(super) fn launch(&mut self, stage: &Stage<'_>) {
+        let (x, y) = (self.place.0 as f32, self.place.1 as f32);
+        let heading = Heading::from_angle(self.rng.angle());
+        let speed = self.rng.range(0.0, WALKING_START_MPS);
+        self.character.stand_at(x, y, heading, speed).expect("a place and a speed that are finite");
+        self.character.sense_into(&mut self.state);
+        self.history.clear();
+        self.push_frame(stage);
     }
 
     fn set(&mut self, pose: &Pose) {
@@ -119,5 +130,61 @@ impl Agent {
             *target = *angle as f32;
         }
         self.character.actuate(&targets);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::path::Path;
+
+    use glam::{Quat, Vec3};
+    use physics_bridge::Model;
+    use policy_core::{BODY_COUNT, Body};
+
+    use super::super::super::config::{EnvironmentConfig, Start};
+    use super::super::super::course::{Course, CourseNode};
+    use super::super::super::demonstrations::Demonstrations;
+    use super::super::super::normalisers::Normalisers;
+    use super::*;
+    use crate::Rng;
+    use crate::clip::Clip;
+
+    #[test]
+    fn who_is_launched_stands_upright_and_goes_where_he_looks() {
+        let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../assets/humanoid.xml");
+        let model = Model::load(path).unwrap();
+        let sunk = Clip {
+            name: "sunk".into(),
+            looping: false,
+            times: vec![0.0, 1.0],
+            root_positions: vec![Vec3::new(0.0, 0.0, 0.9); 2],
+            local_rotations: vec![[Quat::from_rotation_x(0.3); BODY_COUNT]; 2],
+        };
+        let normalisers = Normalisers::from_clips(std::slice::from_ref(&sunk), &model).unwrap();
+        let clips = Demonstrations::from_clips(&[(sunk, 1.0, false)], &model, &normalisers.frame).unwrap();
+        let start = Start { launched: 1.0, ..Start::default() };
+        let config = EnvironmentConfig { imitation: 0.5, start, ..EnvironmentConfig::default() };
+        let stage = Stage {
+            config: &config,
+            course: &Course::new(vec![CourseNode::new("walk", &config, 1.0)], vec![vec![0]]),
+            demonstrations: &[&clips],
+            start_demonstrations: None,
+            recovery: None,
+            normalisers: &normalisers,
+        };
+        let mut agent = Agent::new(&model, Rng::new(5, 0));
+        let mut speeds = Vec::new();
+        for _ in 0..20 {
+            agent.reset(&stage, false);
+            let pelvis = *agent.state.body(Body::Pelvis);
+            assert!((pelvis.rotation * Vec3::Z).z > 0.999 && agent.state.height_of(Body::Pelvis) > 0.8);
+            let along = pelvis.linear_velocity.truncate().dot(agent.heading().direction());
+            assert!((along - pelvis.linear_velocity.length()).abs() < 1e-4, "{:?}", pelvis.linear_velocity);
+            assert!(!agent.imitates(), "a clip that it did not start in");
+            speeds.push(along);
+        }
+        let most = speeds.iter().copied().fold(0.0, f32::max);
+        assert!(most <= WALKING_START_MPS && most > 0.7 * WALKING_START_MPS, "{speeds:?}");
+        assert!(speeds.iter().any(|speed| *speed < 0.3 * WALKING_START_MPS), "{speeds:?}");
     }
 }
