@@ -21,12 +21,17 @@ pub struct Bindings {
     pub speed_path: String,
     /// Path of the left trigger.
     pub stance_path: String,
+    /// Path of a style of walking, whose last node is walked as while a button is held.
+    pub style_path: String,
+    /// That button.
+    pub style_button: Button,
     /// Buttons and the skills they start.
     pub skills: Vec<(Button, String)>,
 }
 
 impl Default for Bindings {
-    /// Right trigger `speed`, left trigger `stance`; south `get_up`, east `roll`, north `jump`, west `kick`.
+    /// Right trigger `speed`, left trigger `stance`, right shoulder `style`; south `get_up`, east `roll`, north `jump`, west
+    /// `kick`.
     fn default() -> Self {
         let skills = [
             (Button::South, "get_up"),
@@ -37,6 +42,8 @@ impl Default for Bindings {
         Self {
             speed_path: "speed".into(),
             stance_path: "stance".into(),
+            style_path: "style".into(),
+            style_button: Button::RightShoulder,
             skills: skills.into_iter().map(|(b, name)| (b, name.into())).collect(),
         }
     }
@@ -47,6 +54,8 @@ impl Default for Bindings {
 pub struct CommandMapper {
     speed: Option<(usize, f32)>,
     stance: Option<(usize, f32)>,
+    style: Option<(usize, f32)>,
+    style_button: Button,
     skills: Vec<(Button, usize)>,
     last: GamepadState,
 }
@@ -69,6 +78,8 @@ impl CommandMapper {
         Self {
             speed: path(&bindings.speed_path),
             stance: path(&bindings.stance_path),
+            style: path(&bindings.style_path),
+            style_button: bindings.style_button,
             skills: bindings.skills.iter().filter_map(skill).collect(),
             last: GamepadState::default(),
         }
@@ -79,7 +90,8 @@ impl CommandMapper {
     /// Stick up goes where the camera looks. The target lies ahead by up to 5 m, as far as the stick is
     /// pushed; at rest there is none. The speed path's coordinate is the stick's deflection in [0, 1], and
     /// the right trigger adds the rest of the path; so does the left trigger to the stance path, which it
-    /// chooses when pressed harder than the right. Values that are not finite count as zero. Does not allocate.
+    /// chooses when pressed harder than the right. While the button of the style path is held, a pushed stick goes to the end of
+    /// that path, whatever the triggers. Values that are not finite count as zero. Does not allocate.
     pub fn map(&mut self, pad: &GamepadState, camera: Heading, state: &CharacterState) -> Command {
         let stick = Vec2::from_array(pad.left_stick.map(finite)).clamp(Vec2::NEG_ONE, Vec2::ONE);
         let length = libm::sqrtf(stick.x * stick.x + stick.y * stick.y);
@@ -92,7 +104,7 @@ impl CommandMapper {
         self.last = *pad;
         Command {
             target,
-            goal: self.goal(push, finite(pad.left_trigger), finite(pad.right_trigger)),
+            goal: self.goal(pad, push),
             skill: self.skills.iter().find(|(button, _)| pressed.contains(*button)).map(|(_, skill)| *skill),
             ..Command::default()
         }
@@ -103,12 +115,17 @@ impl CommandMapper {
         self.last = GamepadState::default();
     }
 
-    fn goal(&self, push: f32, left: f32, right: f32) -> Goal {
+    fn goal(&self, pad: &GamepadState, push: f32) -> Goal {
+        let (left, right) = (finite(pad.left_trigger), finite(pad.right_trigger));
         // From the path's second node on, the trigger covers the rest.
         let along = |(path, end): (usize, f32), start: f32, trigger: f32| Goal::Path {
             path,
             coordinate: start + trigger.clamp(0.0, 1.0) * (end - 1.0).max(0.0),
         };
+        let styled = self.style.filter(|_| push > 0.0 && pad.buttons.contains(self.style_button));
+        if let Some((path, end)) = styled {
+            return Goal::Path { path, coordinate: end };
+        }
         match (self.speed, self.stance) {
             (_, Some(stance)) if left > TRIGGER_THRESHOLD && left >= right => along(stance, 1.0, left),
             (Some(speed), _) if push > 0.0 => along(speed, push, right),

@@ -198,6 +198,14 @@ fn a_pad_becomes_a_command() {
     let both = map(GamepadState { left_trigger: 0.75, ..pad }, Heading::FORWARD);
     assert_eq!(both.goal, Goal::Path { path: 1, coordinate: 2.5 });
 
+    let named = Bindings { style_path: "stance".into(), style_button: Button::West, ..Bindings::default() };
+    let mut styled = CommandMapper::new(&pack, &named);
+    let mut goal = |pad: GamepadState| styled.map(&pad, Heading::FORWARD, &state).goal;
+    let west = GamepadState { buttons: Buttons::NONE.with(Button::West), ..pad };
+    assert_eq!(goal(west), Goal::Path { path: 1, coordinate: 3.0 });
+    assert_eq!(goal(GamepadState { left_stick: [0.0; 2], ..west }), Goal::Path { path: 0, coordinate: 0.0 });
+    assert_eq!(goal(pad), Goal::Path { path: 0, coordinate: 2.0 });
+
     let roll = pack.skill_named("roll");
     let held = GamepadState { buttons: Buttons::NONE.with(Button::East), ..pad };
     assert_eq!([map(held, Heading::FORWARD).skill, map(held, Heading::FORWARD).skill], [roll, None]);

@@ -10,7 +10,7 @@ use serde::Serialize;
 
 use super::{
     Effort, LayerReport, MotionReport, RateReport, UprightReport, measure_coordinates, measure_get_up,
-    measure_layers, measure_push, measure_roll, measure_sweep, measure_upright, pose_error, watch,
+    measure_layers, measure_push, measure_skill, measure_sweep, measure_upright, pose_error, watch,
 };
 
 /// All measures of a pack.
@@ -24,6 +24,8 @@ pub struct Evaluation {
     /// Rolls.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub roll: Option<RateReport>,
+    /// By name: all episodic skills but the one that raises a fallen character.
+    pub skills: BTreeMap<String, RateReport>,
     /// By policy: who is still up after 10 s of turns.
     pub upright: BTreeMap<String, UprightReport>,
     /// By skill.
@@ -153,9 +155,13 @@ pub fn evaluate(
     let cases: Vec<f32> =
         evaluation.layers.values().flat_map(|e| e.values().map(|r| r.without_fall)).collect();
     evaluation.layers_without_fall = cases.iter().sum::<f32>() / cases.len().max(1) as f32;
-    note("get-up and roll");
+    note("episodic skills");
     evaluation.getup = measure_get_up(model, pack, "get_up", effort.drops);
-    evaluation.roll = measure_roll(model, pack, "roll", effort.drops);
+    for (index, skill) in pack.skills().iter().enumerate().filter(|(i, _)| pack.recovery() != Some(*i)) {
+        let report = measure_skill(model, pack, index, effort.drops);
+        evaluation.skills.insert(skill.name.clone(), report);
+    }
+    evaluation.roll = evaluation.skills.get("roll").copied();
     evaluation
 }
 

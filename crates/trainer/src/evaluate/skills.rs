@@ -19,7 +19,7 @@ use crate::env::DT_SECS;
 const GET_UP_SECS: f32 = 5.0;
 
 /// Seconds within which a roll must be over.
-const ROLL_SECS: f32 = 3.0;
+const SKILL_SECS: f32 = 3.0;
 
 /// A share of tries that went well.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
@@ -156,28 +156,25 @@ pub fn watch_skill(
     states
 }
 
-/// Rolls out of a walk that the discriminator ends within 3 s and after which the character still walks a second later.
-/// `None` when the pack has no skill of this name.
+/// Tries of an episodic skill out of the node it returns to, walking, that the discriminator ends within 3 s and after which the
+/// character still walks a second later.
+///
+/// # Panics
+/// When the pack has no such skill.
 #[must_use]
-pub fn measure_roll(
-    model: &Model,
-    pack: &Arc<CharacterPack>,
-    skill: &str,
-    rolls: usize,
-) -> Option<RateReport> {
-    let skill = pack.skill_named(skill)?;
+pub fn measure_skill(model: &Model, pack: &Arc<CharacterPack>, skill: usize, tries: usize) -> RateReport {
     let tries: Vec<_> =
-        (0..rolls).into_par_iter().map(|i| rolls_over(model, pack, skill, i as u64)).collect();
-    Some(RateReport::of(&tries))
+        (0..tries).into_par_iter().map(|i| comes_back(model, pack, skill, i as u64)).collect();
+    RateReport::of(&tries)
 }
 
-fn rolls_over(model: &Model, pack: &Arc<CharacterPack>, skill: usize, seed: u64) -> (bool, Option<f32>) {
+fn comes_back(model: &Model, pack: &Arc<CharacterPack>, skill: usize, seed: u64) -> (bool, Option<f32>) {
     let back = pack.skills()[skill].returns_to;
     let mut subject = Subject::new(model, pack, &pack.graph().nodes()[back].name);
     let mut rng = Rng::new(seed, 13);
     let start = ((SETTLE_SECS + rng.range(0.0, 1.0)) / DT_SECS) as u32;
     let mut ended = None;
-    for tick in 0..start + ((ROLL_SECS + 1.0) / DT_SECS) as u32 {
+    for tick in 0..start + ((SKILL_SECS + 1.0) / DT_SECS) as u32 {
         let target = Some(subject.position() + Vec2::new(TARGET_RANGE_METRES, 0.0));
         let skill = (tick == start).then_some(skill);
         let command = Command { target, goal: Goal::Node(back), skill, ..Command::default() };
@@ -188,5 +185,5 @@ fn rolls_over(model: &Model, pack: &Arc<CharacterPack>, skill: usize, seed: u64)
             ended = Some((tick - start) as f32 * DT_SECS);
         }
     }
-    (ended.is_some_and(|secs| secs <= ROLL_SECS) && subject.pelvis_height() > 0.65, ended)
+    (ended.is_some_and(|secs| secs <= SKILL_SECS) && subject.pelvis_height() > 0.65, ended)
 }

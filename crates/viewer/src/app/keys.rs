@@ -24,10 +24,11 @@ pub struct Keys {
 }
 
 /// What keys do, for the help overlay.
-pub const KEYS: [(&str, &str); 18] = [
+pub const KEYS: [(&str, &str); 19] = [
     ("W A S D, arrows", "walk where the camera looks; with Shift half as fast"),
     ("E", "hold: right trigger, the speed path; lets go slowly"),
     ("Q", "hold: left trigger, the stance path"),
+    ("Z", "hold: right shoulder, the style path, where the pack has one"),
     ("Space", "get up"),
     ("R", "roll"),
     ("J, K", "jump, kick, where the pack has them"),
@@ -46,13 +47,15 @@ pub const KEYS: [(&str, &str); 18] = [
 ];
 
 /// What pad controls do, for the help overlay.
-pub const PAD: [(&str, &str); 7] = [
+pub const PAD: [(&str, &str); 9] = [
     ("left stick", "direction and speed"),
     ("right stick", "camera"),
     ("right trigger", "speed path: walk, jog, run"),
     ("left trigger", "stance path: walk, crouch, crawl"),
     ("A or cross", "get up"),
     ("B or circle", "roll"),
+    ("Y or triangle, X or square", "jump, kick, where the pack has them"),
+    ("right shoulder", "hold: style path, where the pack has one"),
     ("left shoulder", "shove the character to the ground"),
 ];
 
@@ -109,6 +112,7 @@ pub(super) fn read(ui: &Ui, app: &mut App, commands: &mut Vec<ViewerCommand>) {
             (Key::R, Button::East),
             (Key::J, Button::North),
             (Key::K, Button::West),
+            (Key::Z, Button::RightShoulder),
             (Key::V, SHOVE_BUTTON),
         ];
         for (key, button) in held {
