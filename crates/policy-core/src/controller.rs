@@ -32,13 +32,16 @@ pub struct ControllerConfig {
     pub keep_blends: bool,
     /// Start the pack's recovery skill when the character has fallen.
     pub recover: bool,
+    /// Start it too when a rise, out of where low is right, has not come off within 0.8 s. Otherwise the character acts to and
+    /// fro along the edge, and has fallen when that takes more than [`RISE_SECONDS`](crate::RISE_SECONDS).
+    pub rise: bool,
     /// Index of the node to start at.
     pub start: usize,
 }
 
 impl Default for ControllerConfig {
     fn default() -> Self {
-        Self { arithmetic: Arithmetic::Reproducible, keep_blends: true, recover: true, start: 0 }
+        Self { arithmetic: Arithmetic::Reproducible, keep_blends: true, recover: true, rise: true, start: 0 }
     }
 }
 
@@ -249,8 +252,13 @@ impl Controller {
         let mut next = self.report.position;
         graph.travel(&mut next, self.report.goal, dt);
         let limits = [self.report.position, next].map(|position| fall_height(graph, position));
-        if !self.fall.holds_back(limits, state.height_of(Body::Pelvis), dt) {
+        let heights = [Body::Pelvis, Body::Head].map(|body| state.height_of(body));
+        if !self.fall.holds_back(limits, heights, dt) {
             self.report.position = next;
+        } else if let (true, true, Some(recovery)) =
+            (self.config.rise, self.fall.is_late(), self.pack.recovery())
+        {
+            self.start_skill(recovery);
         }
     }
 

@@ -9,11 +9,16 @@ const FALL_SECONDS: f32 = 0.3;
 /// The pelvis has risen when it is this much higher than where it would have fallen, metres.
 const RISEN_METRES: f32 = 0.1;
 
+/// And the head is this much higher than the pelvis: who stoops head down on the way up is about to go down again.
+const HEAD_UP_METRES: f32 = 0.2;
+
 /// Seconds that a rise may take, out of where low is right, before it counts as a fall.
 pub const RISE_SECONDS: f32 = 3.0;
 
-/// Seconds after which a rise that has not come off takes a run-up, and how long one lasts.
-const RUN_UP_AFTER_SECONDS: f32 = 0.8;
+/// Seconds after which a rise that has not come off is late: another skill takes over, or it takes a run-up.
+const LATE_SECONDS: f32 = 0.8;
+
+/// Seconds that a run-up lasts.
 const RUN_UP_SECONDS: f32 = 1.1;
 
 /// How far back along the edge a run-up goes.
@@ -44,19 +49,24 @@ impl FallDetector {
     pub(crate) fn holds_back(
         &mut self,
         [from, to]: [Option<f32>; 2],
-        pelvis_height: f32,
+        [pelvis_height, head_height]: [f32; 2],
         dt_secs: f32,
     ) -> bool {
-        let holds =
-            to.is_some_and(|to| from.is_none_or(|from| from < to) && pelvis_height < to + RISEN_METRES);
+        let risen = |to| pelvis_height >= to + RISEN_METRES && head_height >= pelvis_height + HEAD_UP_METRES;
+        let holds = to.is_some_and(|to| from.is_none_or(|from| from < to) && !risen(to));
         self.rising_seconds = if holds { self.rising_seconds + dt_secs } else { 0.0 };
         holds
+    }
+
+    /// True when the character is held back and should have risen by now.
+    pub(crate) fn is_late(&self) -> bool {
+        self.rising_seconds > LATE_SECONDS
     }
 
     /// Where on the graph a character acts that is held back at `position`: there, and after a while to and fro along the edge. A
     /// deterministic policy that has come to rest half-way up stays there for good; what moves it is another policy.
     pub(crate) fn place_to_act(&self, position: GraphPosition) -> GraphPosition {
-        let late = self.rising_seconds - RUN_UP_AFTER_SECONDS;
+        let late = self.rising_seconds - LATE_SECONDS;
         if late <= 0.0 || position.as_node().is_some() {
             return position;
         }
@@ -84,7 +94,9 @@ mod tests {
         let mut places = alloc::vec::Vec::new();
         let mut ticks = 0;
         while !fall.tick(None, 0.3, 0.1) {
-            assert!(fall.holds_back([Some(0.2), Some(0.4)], 0.3, 0.1));
+            assert!(fall.holds_back([Some(0.2), Some(0.4)], [0.3, 0.7], 0.1));
+            // Up to rounding: not at eight tenths, but at nine.
+            assert!(ticks == 7 || fall.is_late() == (ticks > 7), "{ticks}");
             places.push(fall.place_to_act(held).t);
             let other_way = fall.place_to_act(GraphPosition { from: 5, to: 4, t: 0.99 });
             assert!((other_way.t + places[ticks] - 1.0).abs() < 1e-5, "{other_way:?} {places:?}");
@@ -97,7 +109,10 @@ mod tests {
         assert!(places[18] < 0.05, "up again after a run-up: {places:?}");
         let other_way = fall.place_to_act(GraphPosition { from: 5, to: 4, t: 0.99 });
         assert!(other_way.t <= 0.99);
-        assert!(!fall.holds_back([Some(0.4), Some(0.4)], 0.9, 0.1));
+        assert!(!fall.holds_back([Some(0.4), Some(0.4)], [0.9, 1.4], 0.1));
+        // Hips up and head down is no rise.
+        assert!(fall.holds_back([None, Some(0.4)], [0.9, 1.0], 0.1));
+        assert!(!fall.holds_back([None, Some(0.4)], [0.9, 1.2], 0.1));
         assert_eq!(fall.place_to_act(held), held);
     }
 }

@@ -16,6 +16,7 @@ const DT: f32 = 1.0 / 30.0;
 fn standing() -> CharacterState {
     let mut state = CharacterState::default();
     state.bodies.iter_mut().for_each(|b| b.position.z = 0.9);
+    state.bodies[2].position.z = 1.4;
     state
 }
 
@@ -132,7 +133,10 @@ fn who_leaves_a_crawl_rises_before_the_place_is_left() {
         state
     };
     let crouching = Command { goal: Goal::Node(1), ..Command::default() };
-    let mut controller = controller(0.0, "crawl");
+    let pack = common::pack(0.0);
+    let start = pack.graph().node_named("crawl").unwrap();
+    let config = ControllerConfig { rise: false, start, ..ControllerConfig::default() };
+    let mut controller = Controller::with_config(Arc::new(pack), config);
     let ticks = |controller: &mut Controller, pelvis: f32, count: u32| {
         for _ in 0..count {
             controller.tick(&at(pelvis), &crouching, DT);
@@ -149,6 +153,29 @@ fn who_leaves_a_crawl_rises_before_the_place_is_left() {
     let mut risen = controller.clone();
     assert_eq!(ticks(&mut risen, 0.9, 120).0, Some(1));
     assert!(ticks(&mut controller, 0.3, 90).2.is_some());
+}
+
+#[test]
+fn who_is_late_to_rise_is_raised_by_the_recovery_skill_without_a_fall() {
+    let mut low = standing();
+    low.bodies[0].position.z = 0.3;
+    let crouching = Command { goal: Goal::Node(1), ..Command::default() };
+    for recover in [false, true] {
+        let pack = common::pack(0.0);
+        let (start, recovery) = (pack.graph().node_named("crawl").unwrap(), pack.recovery());
+        let config = ControllerConfig { recover, start, ..ControllerConfig::default() };
+        let mut controller = Controller::with_config(Arc::new(pack), config);
+        let mut held = 0;
+        while controller.report().skill.is_none() {
+            let before = controller.report().position;
+            controller.tick(&low, &crouching, DT);
+            assert!(!controller.report().fallen);
+            held = if controller.report().position == before { held + 1 } else { 0 };
+            assert!(held < 60, "{:?}", controller.report());
+        }
+        assert!((24..=27).contains(&held), "{held} ticks are 0.8 s");
+        assert_eq!(controller.report().skill_started, recovery);
+    }
 }
 
 #[test]

@@ -6,6 +6,7 @@ use physics_bridge::Model;
 use policy_core::{BlendMode, CharacterPack, Goal, Heading, TARGET_RANGE_METRES};
 use rayon::prelude::*;
 
+use super::report::ModeReport;
 use super::subject::{SETTLE_SECS, Subject, Wanderer};
 use crate::Rng;
 use crate::env::DT_SECS;
@@ -18,6 +19,8 @@ const TRAVEL_SECS: f32 = 3.0;
 pub struct Walked {
     /// Falls.
     pub falls: u32,
+    /// Ways up out of where low is right that the skill took which raises fallen characters.
+    pub rises: u32,
     /// Minutes measured.
     pub minutes: f32,
     /// Mean speed along the wanted direction, metres per second.
@@ -50,6 +53,7 @@ fn walk(
             command.goal = Goal::Path { path, coordinate: 1.0 };
         }
         let sound = subject.tick(&command);
+        walked.rises += u32::from(subject.controller.report().skill_started.is_some());
         settled += DT_SECS;
         if settled > SETTLE_SECS + TRAVEL_SECS {
             along += (subject.position() - before).dot(player.direction());
@@ -66,7 +70,7 @@ fn walk(
     walked
 }
 
-/// Falls per character-minute under a trigger that sweeps over the whole path, with random turns.
+/// Falls, and rises by a skill, under a trigger that sweeps over the whole path, with random turns.
 #[must_use]
 pub fn measure_sweep(
     model: &Model,
@@ -74,10 +78,13 @@ pub fn measure_sweep(
     path: usize,
     mode: BlendMode,
     (characters, secs): (usize, f32),
-) -> f32 {
+) -> ModeReport {
     let each = (0..characters).into_par_iter();
     let walked: Vec<Walked> = each.map(|i| walk(model, pack, path, mode, None, (secs, i as u64))).collect();
-    falls_per_minute(&walked)
+    ModeReport {
+        falls_per_character_minute: per_minute(&walked, |w| w.falls),
+        rises_by_skill_per_character_minute: per_minute(&walked, |w| w.rises),
+    }
 }
 
 /// Falls per character-minute and mean speed at a coordinate, with random turns.
@@ -94,11 +101,11 @@ pub fn measure_coordinates(
     let walked: Vec<Walked> =
         each.map(|i| walk(model, pack, path, mode, Some(coordinate), (secs, i as u64))).collect();
     let speed = walked.iter().map(|w| w.speed_mps).sum::<f32>() / walked.len().max(1) as f32;
-    (falls_per_minute(&walked), speed)
+    (per_minute(&walked, |w| w.falls), speed)
 }
 
-fn falls_per_minute(walked: &[Walked]) -> f32 {
-    let falls: u32 = walked.iter().map(|w| w.falls).sum();
+fn per_minute(walked: &[Walked], count: impl Fn(&Walked) -> u32) -> f32 {
+    let counted: u32 = walked.iter().map(count).sum();
     let minutes: f32 = walked.iter().map(|w| w.minutes).sum();
-    falls as f32 / minutes.max(1e-6)
+    counted as f32 / minutes.max(1e-6)
 }

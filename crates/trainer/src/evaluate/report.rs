@@ -61,6 +61,8 @@ pub struct PathReport {
 pub struct ModeReport {
     /// Under a trigger that sweeps over the path, with random turns.
     pub falls_per_character_minute: f32,
+    /// Ways up out of a crawl, under the same trigger, that took long and were left to the skill that raises fallen characters.
+    pub rises_by_skill_per_character_minute: f32,
 }
 
 /// Measures at a coordinate of a path.
@@ -107,8 +109,8 @@ pub fn evaluate(
         note(&format!("path {}", path.name));
         let mut report = PathReport::default();
         for mode in BlendMode::ALL {
-            let falls = measure_sweep(model, pack, index, mode, (effort.characters, effort.secs));
-            report.modes.insert(mode.name().into(), ModeReport { falls_per_character_minute: falls });
+            let swept = measure_sweep(model, pack, index, mode, (effort.characters, effort.secs));
+            report.modes.insert(mode.name().into(), swept);
         }
         for i in 0..effort.coordinates {
             let coordinate = path.end() * i as f32 / (effort.coordinates - 1).max(1) as f32;

@@ -18,7 +18,7 @@ use crate::env::DT_SECS;
 /// Seconds within which a dropped character must stand.
 const GET_UP_SECS: f32 = 5.0;
 
-/// Seconds within which a roll must be over.
+/// Seconds within which an episodic skill must be over.
 const SKILL_SECS: f32 = 3.0;
 
 /// A share of tries that went well.
