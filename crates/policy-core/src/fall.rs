@@ -66,10 +66,10 @@ impl FallDetector {
     /// Where on the graph a character acts that is held back at `position`: there, and after a while to and fro along the edge. A
     /// deterministic policy that has come to rest half-way up stays there for good; what moves it is another policy.
     pub(crate) fn place_to_act(&self, position: GraphPosition) -> GraphPosition {
-        let late = self.rising_seconds - LATE_SECONDS;
-        if late <= 0.0 || position.as_node().is_some() {
+        if !self.is_late() || position.as_node().is_some() {
             return position;
         }
+        let late = self.rising_seconds - LATE_SECONDS;
         let back = 0.5 * RUN_UP * (1.0 - libm::cosf(core::f32::consts::TAU * late / RUN_UP_SECONDS));
         let t = if position.t < 0.5 { position.t + back } else { position.t - back };
         GraphPosition { t: t.clamp(0.0, 1.0), ..position }

@@ -6,7 +6,7 @@ use std::sync::Arc;
 
 use glam::{Quat, Vec2, Vec3};
 use policy_core::{
-    Bindings, Blend, BlendMode, Button, Buttons, CharacterPack, CharacterState, Command, CommandMapper,
+    Bindings, Blend, BlendMode, Body, Button, Buttons, CharacterPack, CharacterState, Command, CommandMapper,
     Controller, ControllerConfig, GamepadState, Goal, GraphPosition, Heading, SkillEnd,
 };
 use proptest::prelude::*;
@@ -16,7 +16,7 @@ const DT: f32 = 1.0 / 30.0;
 fn standing() -> CharacterState {
     let mut state = CharacterState::default();
     state.bodies.iter_mut().for_each(|b| b.position.z = 0.9);
-    state.bodies[2].position.z = 1.4;
+    state.bodies[Body::Head.index()].position.z = 1.4;
     state
 }
 

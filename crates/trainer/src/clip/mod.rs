@@ -145,4 +145,4 @@ impl Clip {
 const MIRRORED_BODY: [usize; BODY_COUNT] = [0, 1, 2, 6, 7, 8, 3, 4, 5, 12, 13, 14, 9, 10, 11];
 
 #[cfg(test)]
-mod tests;
+pub(crate) mod tests;

@@ -5,7 +5,7 @@ use super::*;
 
 const LIMITS: JointLimits = JointLimits { low: [-3.0; DOF_COUNT], high: [3.0; DOF_COUNT] };
 
-fn still(frames: usize) -> Clip {
+pub(crate) fn still(frames: usize) -> Clip {
     Clip {
         name: "still".into(),
         looping: false,

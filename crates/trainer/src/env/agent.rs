@@ -111,18 +111,8 @@ impl Agent {
         let launched = !limp && self.rng.chance(config.start.launched);
         if launched {
             self.launch(stage);
-        }
-        let tries = if launched { 0 } else { START_TRIES };
-        for _ in 0..tries {
-            let start = self.draw_start(stage);
-            if limp {
-                self.drop_limp(stage, &start);
-            } else {
-                self.start_from(&start);
-            }
-            if !self.has_fallen(stage) {
-                break;
-            }
+        } else {
+            self.start_in_clips(stage, limp);
         }
         let at = (self.position(), self.heading().angle());
         self.command.aim(config, stage.course, at, &mut self.rng);
@@ -241,6 +231,3 @@ impl Agent {
 
 /// Ticks after which a character counts as one that has stood.
 const STOOD_TICKS: u32 = 5;
-
-/// Draws of a start state until one is none that fails at once; the last one is taken as it is.
-const START_TRIES: usize = 4;

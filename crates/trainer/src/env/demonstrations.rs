@@ -203,22 +203,17 @@ impl Demonstrations {
 mod tests {
     use std::path::Path;
 
-    use glam::{Quat, Vec3};
-    use policy_core::{BODY_COUNT, Body};
+    use glam::Quat;
+    use policy_core::Body;
 
     use super::*;
+    use crate::clip::tests::still;
 
     #[test]
     fn the_nearest_moment_is_that_of_the_same_pose() {
         let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../assets/humanoid.xml");
         let model = Model::load(path).unwrap();
-        let mut clip = Clip {
-            name: "bow".into(),
-            looping: false,
-            times: (0..31).map(|i| i as f32 / 30.0).collect(),
-            root_positions: vec![Vec3::new(0.0, 0.0, 0.9); 31],
-            local_rotations: vec![[Quat::IDENTITY; BODY_COUNT]; 31],
-        };
+        let mut clip = still(31);
         for (i, rotations) in clip.local_rotations.iter_mut().enumerate() {
             rotations[Body::Torso.index()] = Quat::from_rotation_y(0.04 * i as f32);
         }

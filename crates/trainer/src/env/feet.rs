@@ -19,9 +19,9 @@ pub(super) fn put_on_ground(
     limits: &JointLimits,
     character: &mut Character,
 ) -> Result<(), PoseError> {
+    character.set_pose(&pose.qpos, &pose.qvel)?;
     for (foot, joint) in ANKLES {
         let ankle = JOINT_NAMES.iter().position(|name| *name == joint).expect("an ankle of the humanoid");
-        character.set_pose(&pose.qpos, &pose.qvel)?;
         let lowest = character.clearance_of(foot);
         if lowest >= 0.0 {
             continue;

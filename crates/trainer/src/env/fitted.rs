@@ -49,11 +49,7 @@ pub fn fit(clip: &Clip, model: &Model) -> Result<Fitted, SourceError> {
     let mut motion = Motion::fit(clip, limits)?;
     let mut character = Character::new(model);
     for (index, pose) in motion.poses.iter_mut().enumerate() {
-        put_on_ground(pose, &limits, &mut character).map_err(|source| SourceError::Pose {
-            clip: clip.name.clone(),
-            index,
-            source,
-        })?;
+        put_on_ground(pose, &limits, &mut character).map_err(refused(&clip.name, index))?;
     }
     motion.differentiate();
     let mut lowest = states(&motion, model)?.1;
@@ -70,10 +66,14 @@ fn states(motion: &Motion, model: &Model) -> Result<(Vec<CharacterState>, Vec<f3
     let mut states = vec![CharacterState::default(); motion.poses.len()];
     let mut clearances = Vec::with_capacity(motion.poses.len());
     for (index, (pose, state)) in motion.poses.iter().zip(&mut states).enumerate() {
-        let refused = |source| SourceError::Pose { clip: motion.name.clone(), index, source };
-        character.set_pose(&pose.qpos, &pose.qvel).map_err(refused)?;
+        character.set_pose(&pose.qpos, &pose.qvel).map_err(refused(&motion.name, index))?;
         character.sense_into(state);
         clearances.push(character.clearance());
     }
     Ok((states, clearances))
+}
+
+/// The error of a clip's pose that the physics refuses.
+fn refused(clip: &str, index: usize) -> impl FnOnce(PoseError) -> SourceError {
+    move |source| SourceError::Pose { clip: clip.into(), index, source }
 }

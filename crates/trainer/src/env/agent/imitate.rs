@@ -85,8 +85,9 @@ impl Imitated {
     }
 
     /// Reward for being like it, and whether it is lost.
-    fn held_against(self, is: &Likeness, clips: &Demonstrations, lost_metres: f32) -> (f32, bool) {
-        let wanted = clips.likeness(self.moment);
+    fn held_against(self, is: &Likeness, stage: &Stage<'_>) -> (f32, bool) {
+        let wanted = stage.demonstrations[self.node].likeness(self.moment);
+        let lost_metres = stage.course.nodes()[self.node].lost_metres;
         (is.reward(wanted), self.free_ticks == 0 && is.is_lost(wanted, lost_metres))
     }
 }
@@ -116,11 +117,10 @@ impl Agent {
     pub(super) fn imitate(&mut self, stage: &Stage<'_>) -> (f32, Done) {
         let Some(imitated) = self.imitated else { return (0.0, Done::No) };
         let clips = stage.demonstrations[imitated.node];
-        let lost_metres = stage.course.nodes()[imitated.node].lost_metres;
         let is = Likeness::of(&self.state);
         self.imitated = imitated.next(clips).map(|now| now.in_pace(&is, clips).this_way_round(&is, clips));
         let Some(now) = self.imitated else { return (0.0, Done::TimedOut) };
-        let (reward, lost) = now.held_against(&is, clips, lost_metres);
+        let (reward, lost) = now.held_against(&is, stage);
         (reward, if lost { Done::Failed } else { Done::No })
     }
 
@@ -136,12 +136,11 @@ impl Agent {
             return 0.0;
         }
         let clips = stage.demonstrations[node];
-        let lost_metres = stage.course.nodes()[node].lost_metres;
         let is = Likeness::of(&self.state);
         let follow = self.imitated.filter(|before| before.node == node).and_then(|before| before.next(clips));
         let now = follow.unwrap_or_else(|| Imitated::soon(node, clips.nearest(&is)));
         let now = now.in_pace(&is, clips).this_way_round(&is, clips);
-        let (reward, lost) = now.held_against(&is, clips, lost_metres);
+        let (reward, lost) = now.held_against(&is, stage);
         self.imitated = (!lost).then_some(now);
         self.strayed_ticks = if lost { STRAYED_TICKS } else { 0 };
         reward

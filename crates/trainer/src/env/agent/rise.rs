@@ -61,9 +61,8 @@ mod tests {
     use std::path::Path;
     use std::sync::Arc;
 
-    use glam::{Quat, Vec3};
     use physics_bridge::Model;
-    use policy_core::{BODY_COUNT, Body, CharacterPack, ControllerConfig};
+    use policy_core::{Body, CharacterPack, ControllerConfig};
 
     use super::super::super::config::EnvironmentConfig;
     use super::super::super::course::{Course, CourseNode};
@@ -71,7 +70,7 @@ mod tests {
     use super::super::super::normalisers::Normalisers;
     use super::*;
     use crate::Rng;
-    use crate::clip::Clip;
+    use crate::clip::tests::still;
 
     #[test]
     fn the_skill_that_ships_hands_over_somebody_who_is_up() {
@@ -79,18 +78,12 @@ mod tests {
         let model = Model::load(assets.join("humanoid.xml")).unwrap();
         let pack = std::fs::read(assets.join("humanoid.pack.safetensors")).unwrap();
         let pack = Arc::new(CharacterPack::from_bytes(&pack).unwrap());
-        let still = Clip {
-            name: "still".into(),
-            looping: false,
-            times: (0..30).map(|i| i as f32 / 30.0).collect(),
-            root_positions: vec![Vec3::new(0.0, 0.0, 0.9); 30],
-            local_rotations: vec![[Quat::IDENTITY; BODY_COUNT]; 30],
-        };
         let normalisers = Normalisers {
             observation: pack.tensors().observation_normaliser.clone(),
             frame: pack.tensors().discriminator_normaliser.clone(),
         };
-        let clips = Demonstrations::from_clips(&[(still, 1.0, false)], &model, &normalisers.frame).unwrap();
+        let clips =
+            Demonstrations::from_clips(&[(still(30), 1.0, false)], &model, &normalisers.frame).unwrap();
         let config = EnvironmentConfig::default();
         let nodes = ["walk", "idle"].map(|name| CourseNode::new(name, &config, 1.0)).to_vec();
         let course = Course::new(nodes, vec![vec![1, 0]]);

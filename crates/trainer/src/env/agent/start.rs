@@ -14,6 +14,9 @@ const TERRAIN_HALF_METRES: f32 = 25.0;
 /// Ticks of an episode that starts before a failure, at most: what it is about comes first.
 const MISHAP_TICKS: u32 = 120;
 
+/// Draws of a start state until one is none that fails at once; the last one is taken as it is.
+const START_TRIES: usize = 4;
+
 impl Agent {
     /// Chooses where the next episode starts: on flat ground at the origin, on a terrain anywhere near its middle.
     pub(super) fn choose_place(&mut self) {
@@ -34,6 +37,21 @@ impl Agent {
         self.born_at = self.born_at.max(stage.config.episode_ticks.saturating_sub(MISHAP_TICKS));
         self.age = self.born_at;
         true
+    }
+
+    /// Starts out of clips, or limp from there.
+    pub(super) fn start_in_clips(&mut self, stage: &Stage<'_>, limp: bool) {
+        for _ in 0..START_TRIES {
+            let start = self.draw_start(stage);
+            if limp {
+                self.drop_limp(stage, &start);
+            } else {
+                self.start_from(&start);
+            }
+            if !self.has_fallen(stage) {
+                break;
+            }
+        }
     }
 
     /// A start state out of other clips, those of any node, those around the place on the course, or the last node's.
@@ -60,7 +78,7 @@ impl Agent {
     }
 
     /// Sets the character down in a random heading, lifted until nothing is in the ground.
-    pub(super) fn start_from(&mut self, start: &StartPose) {
+    fn start_from(&mut self, start: &StartPose) {
         let (x, y) = self.place;
         let mut pose = placed(&start.pose, x, y, f64::from(self.rng.angle()));
         pose.qpos[2] += f64::from(self.character.model().height_at(x as f32, y as f32));
@@ -147,21 +165,16 @@ mod tests {
     use super::super::super::normalisers::Normalisers;
     use super::*;
     use crate::Rng;
-    use crate::clip::Clip;
+    use crate::clip::tests::still;
 
     #[test]
     fn who_is_launched_stands_upright_and_goes_where_he_looks() {
         let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../assets/humanoid.xml");
         let model = Model::load(path).unwrap();
-        let sunk = Clip {
-            name: "sunk".into(),
-            looping: false,
-            times: vec![0.0, 1.0],
-            root_positions: vec![Vec3::new(0.0, 0.0, 0.9); 2],
-            local_rotations: vec![[Quat::from_rotation_x(0.3); BODY_COUNT]; 2],
-        };
-        let normalisers = Normalisers::from_clips(std::slice::from_ref(&sunk), &model).unwrap();
-        let clips = Demonstrations::from_clips(&[(sunk, 1.0, false)], &model, &normalisers.frame).unwrap();
+        let mut tilted = still(30);
+        tilted.local_rotations = vec![[Quat::from_rotation_x(0.3); BODY_COUNT]; 30];
+        let normalisers = Normalisers::from_clips(std::slice::from_ref(&tilted), &model).unwrap();
+        let clips = Demonstrations::from_clips(&[(tilted, 1.0, false)], &model, &normalisers.frame).unwrap();
         let start = Start { launched: 1.0, ..Start::default() };
         let config = EnvironmentConfig { imitation: 0.5, start, ..EnvironmentConfig::default() };
         let stage = Stage {
