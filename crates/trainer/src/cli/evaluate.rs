@@ -45,7 +45,7 @@ pub(crate) fn run(
     };
     let evaluation = evaluate(model, &Arc::new(pack), &effort, &states, |what| {
         eprintln!("{:5.0} s {what}", start.elapsed().as_secs_f32());
-    });
+    })?;
     let text = serde_json::to_string_pretty(&evaluation)?;
     match &arguments.json {
         Some(path) => {

@@ -14,7 +14,7 @@ use super::command::{Command, DT_SECS};
 use super::config::Task;
 use super::fallen::{FallRule, stands};
 use super::population::Stage;
-use super::reward::{RewardTerms, standing_reward, target_reward};
+use super::reward::{Manner, RewardTerms, standing_reward, target_reward};
 use crate::Rng;
 use crate::ppo::Done;
 
@@ -174,11 +174,15 @@ impl Agent {
         self.stood_ticks += u32::from(stands(&self.state));
         let velocity = (self.position() - before) / DT_SECS;
         let place = self.command.place;
-        let speed = (stage.course.speed_mps(place), stage.course.least_width_mps(place));
+        let manner = Manner {
+            speed_mps: stage.course.speed_mps(place),
+            least_width_mps: stage.course.least_width_mps(place),
+            strict_facing: config.strict_facing,
+        };
         let height = (config.height, stage.course.pelvis_metres(place));
         let terms = match config.task {
             Task::Target if self.command.is_late() => RewardTerms::default(),
-            Task::Target => target_reward(&self.state, velocity, self.command.target, speed)
+            Task::Target => target_reward(&self.state, velocity, self.command.target, manner)
                 .with_height(&self.state, height),
             Task::Stand => standing_reward(&self.state),
         };

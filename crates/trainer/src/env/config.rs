@@ -80,6 +80,9 @@ pub struct EnvironmentConfig {
     pub least_width_mps: f32,
     /// What the task reward asks for.
     pub task: Task,
+    /// Share of the reward for facing the target that only who nearly faces it gets. Without it a slow gait that goes
+    /// sideways loses next to nothing.
+    pub strict_facing: f32,
     /// Share of the task reward that is for the height of the pelvis: that of the clips at the place on the course, of skills
     /// trained together. It says how low to be between an upright gait and one on the ground.
     pub height: f32,
@@ -145,6 +148,7 @@ impl Default for EnvironmentConfig {
             speed_mps: 1.25,
             least_width_mps: 0.6,
             task: Task::Target,
+            strict_facing: 0.0,
             height: 0.0,
             imitation: 0.0,
             imitators: 0.0,

@@ -25,4 +25,4 @@ pub use fitted::{Fitted, SourceError, fit};
 pub use imitation::Likeness;
 pub use normalisers::Normalisers;
 pub use population::{NodeReport, Population, PopulationReport, REPORTED_NODES, Stage};
-pub use reward::{RewardTerms, slide_mps, standing_reward, target_reward};
+pub use reward::{Manner, RewardTerms, slide_mps, standing_reward, target_reward};

@@ -49,35 +49,47 @@ pub fn slide_mps(state: &CharacterState, contacts: &[Contact], weight_newton: f3
 /// Within this distance of the target the commanded speed falls to zero, metres.
 const BRAKING_METRES: f32 = 1.0;
 
-/// Reward for going to `target` at `speed_mps` and facing it. `velocity` is that of the pelvis over the tick.
+/// How a target is to be gone to.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Manner {
+    /// Speed, metres per second.
+    pub speed_mps: f32,
+    /// Least error of the speed that counts as a large one, metres per second.
+    pub least_width_mps: f32,
+    /// Share of the reward for facing the target that only who nearly faces it gets, 0 to 1.
+    pub strict_facing: f32,
+}
+
+/// Angle to the target at which the strict reward for facing it has fallen to 1/e, radians.
+const STRICT_FACING_RADIANS: f32 = 0.4;
+
+/// Reward for going to `target` in a manner and facing it. `velocity` is that of the pelvis over the tick.
 ///
 /// `0.4 exp(-2 d) + 0.3 exp(-2 d / 9) + 0.3 facing` with `d = (e^2 + 0.25 s^2) / w^2`, speed error `e`, sideways speed `s`
-/// and a width `w`, metres per second, that grows with the commanded speed from `least_width` on, evenly below a walk and with
+/// and a width `w`, metres per second, that grows with the commanded speed from the least width on, evenly below a walk and with
 /// the root above. The narrow bell makes the speed exact; the wide one gives a walk
 /// that is asked to run, or to stand, a slope to go down. Facing falls evenly from 1 to 0 straight behind, so that who goes
-/// the wrong way altogether gains by every degree too.
+/// the wrong way altogether gains by every degree too; the strict share of it is a bell, or who goes a little sideways
+/// hardly pays for it.
 #[must_use]
-pub fn target_reward(
-    state: &CharacterState,
-    velocity: Vec2,
-    target: Vec2,
-    (speed_mps, least_width): (f32, f32),
-) -> RewardTerms {
+pub fn target_reward(state: &CharacterState, velocity: Vec2, target: Vec2, manner: Manner) -> RewardTerms {
     let pelvis = state.body(Body::Pelvis);
     let to_target = target - pelvis.position.truncate();
     let distance = to_target.length();
     let facing_now = Heading::from_rotation(pelvis.rotation).direction();
     let near = (distance / BRAKING_METRES).min(1.0);
     let direction = if distance > 1e-3 { to_target / distance } else { facing_now };
-    let commanded_mps = speed_mps * near;
+    let commanded_mps = manner.speed_mps * near;
     let along = velocity.dot(direction);
     let sideways = velocity.perp_dot(direction);
     let pace = commanded_mps / 1.25;
-    let width = (0.6 * pace.min(pace.sqrt())).max(least_width);
+    let width = (0.6 * pace.min(pace.sqrt())).max(manner.least_width_mps);
     let error = ((along - commanded_mps).powi(2) + 0.25 * sideways * sideways) / (width * width);
     // Close by, which way the target lies says nothing.
-    let aside = facing_now.angle_to(direction).abs() / std::f32::consts::PI;
-    let facing = 1.0 - near * aside;
+    let aside = facing_now.angle_to(direction);
+    let (evenly, bell) =
+        (aside.abs() / std::f32::consts::PI, 1.0 - (-(aside / STRICT_FACING_RADIANS).powi(2)).exp());
+    let facing = 1.0 - near * (evenly + manner.strict_facing * (bell - evenly));
     let speed = 0.4 * (-2.0 * error).exp() + 0.3 * (-2.0 * error / 9.0).exp();
     RewardTerms { task: speed + 0.3 * facing, speed_mps: along, commanded_mps, ..RewardTerms::default() }
 }
@@ -106,30 +118,37 @@ pub fn standing_reward(state: &CharacterState) -> RewardTerms {
 mod tests {
     use super::*;
 
+    fn manner(speed_mps: f32, least_width_mps: f32) -> Manner {
+        Manner { speed_mps, least_width_mps, strict_facing: 0.0 }
+    }
+
     #[test]
     fn the_right_speed_towards_the_target_is_worth_one() {
         let state = CharacterState::default();
-        let terms = target_reward(&state, Vec2::new(1.25, 0.0), Vec2::new(5.0, 0.0), (1.25, 0.6));
+        let terms = target_reward(&state, Vec2::new(1.25, 0.0), Vec2::new(5.0, 0.0), manner(1.25, 0.6));
         assert!((terms.task - 1.0).abs() < 1e-6);
-        let away = target_reward(&state, Vec2::new(-1.25, 0.0), Vec2::new(5.0, 0.0), (1.25, 0.6));
+        let away = target_reward(&state, Vec2::new(-1.25, 0.0), Vec2::new(5.0, 0.0), manner(1.25, 0.6));
         assert!(away.task < 0.5);
     }
 
     #[test]
     fn a_walk_asked_to_run_or_to_stand_feels_a_slope() {
         let state = CharacterState::default();
-        let at =
-            |speed: f32| target_reward(&state, Vec2::new(speed, 0.0), Vec2::new(5.0, 0.0), (3.5, 0.6)).task;
+        let at = |speed: f32| {
+            target_reward(&state, Vec2::new(speed, 0.0), Vec2::new(5.0, 0.0), manner(3.5, 0.6)).task
+        };
         assert!(at(1.5) - at(1.3) > 0.02, "{} {}", at(1.5), at(1.3));
-        let at =
-            |speed: f32| target_reward(&state, Vec2::new(speed, 0.0), Vec2::new(5.0, 0.0), (0.0, 0.6)).task;
+        let at = |speed: f32| {
+            target_reward(&state, Vec2::new(speed, 0.0), Vec2::new(5.0, 0.0), manner(0.0, 0.6)).task
+        };
         assert!(at(1.2) - at(1.4) > 0.02, "{} {}", at(1.2), at(1.4));
     }
 
     #[test]
     fn a_slow_gait_that_rests_misses_most_of_its_reward() {
         let state = CharacterState::default();
-        let at = |speed: f32| target_reward(&state, Vec2::new(speed, 0.0), Vec2::new(5.0, 0.0), (0.34, 0.2));
+        let at =
+            |speed: f32| target_reward(&state, Vec2::new(speed, 0.0), Vec2::new(5.0, 0.0), manner(0.34, 0.2));
         assert!(at(0.34).task - at(0.0).task > 0.4, "{}", at(0.0).task);
     }
 
@@ -138,12 +157,27 @@ mod tests {
         let state = CharacterState::default();
         let at = |degrees: f32| {
             let target = 5.0 * Vec2::from_angle(degrees.to_radians());
-            target_reward(&state, Vec2::ZERO, target, (0.3, 0.6)).task
+            target_reward(&state, Vec2::ZERO, target, manner(0.3, 0.6)).task
         };
         for degrees in (0..180).step_by(10).map(|d| d as f32) {
             assert!(at(degrees) - at(degrees + 10.0) > 0.01, "{degrees}");
             assert!((at(degrees) - at(-degrees)).abs() < 1e-6);
         }
+    }
+
+    #[test]
+    fn a_strict_facing_makes_a_little_sideways_cost_much() {
+        let state = CharacterState::default();
+        let at = |degrees: f32, strict_facing: f32| {
+            let target = 5.0 * Vec2::from_angle(degrees.to_radians());
+            let manner = Manner { strict_facing, ..manner(0.3, 0.6) };
+            target_reward(&state, 0.3 * target.normalize(), target, manner).task
+        };
+        assert!((at(0.0, 1.0) - 1.0).abs() < 1e-6 && (at(180.0, 0.5) - 0.7).abs() < 1e-4);
+        // 0.3 of 30 degrees in 180, and of a bell of 0.4 radians.
+        assert!((at(30.0, 0.0) - 0.95).abs() < 1e-4);
+        assert!((at(30.0, 1.0) - (0.7 + 0.3 * (-(0.5236_f32 / 0.4).powi(2)).exp())).abs() < 1e-4);
+        assert!((at(30.0, 0.5) - 0.5 * (at(30.0, 0.0) + at(30.0, 1.0))).abs() < 1e-6);
     }
 
     #[test]
@@ -183,8 +217,8 @@ mod tests {
     #[test]
     fn at_the_target_standing_is_best_whatever_the_heading() {
         let state = CharacterState::default();
-        let still = target_reward(&state, Vec2::ZERO, Vec2::ZERO, (1.25, 0.6));
+        let still = target_reward(&state, Vec2::ZERO, Vec2::ZERO, manner(1.25, 0.6));
         assert!((still.task - 1.0).abs() < 1e-6);
-        assert!(target_reward(&state, Vec2::X, Vec2::ZERO, (1.25, 0.6)).task < 0.7);
+        assert!(target_reward(&state, Vec2::X, Vec2::ZERO, manner(1.25, 0.6)).task < 0.7);
     }
 }

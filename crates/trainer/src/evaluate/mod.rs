@@ -14,7 +14,7 @@ pub use layers::{LayerReport, measure_layers, watch_layers};
 pub use motion::{MotionReport, STANCE_METRES, clip_states, pose_error, watch};
 pub use paths::{measure_coordinates, measure_sweep};
 pub use push::measure_push;
-pub use report::{Evaluation, ModeReport, PathReport, PushReport, SpeedPoint, evaluate};
+pub use report::{Evaluation, GROUNDS, ModeReport, PathReport, PushReport, SpeedPoint, evaluate};
 pub use skills::{RateReport, measure_get_up, measure_skill, watch_skill};
 pub use subject::{Subject, Wanderer};
 pub use upright::{UprightReport, measure_upright};
@@ -26,6 +26,8 @@ pub struct Effort {
     pub characters: usize,
     /// Seconds each of them walks.
     pub secs: f32,
+    /// Characters in a measure of survival on uneven ground.
+    pub characters_uneven: usize,
     /// Coordinates along a path.
     pub coordinates: usize,
     /// Characters at each coordinate.
@@ -42,6 +44,7 @@ impl Effort {
     /// What figures are published from.
     pub const FULL: Effort = Effort {
         characters: 256,
+        characters_uneven: 64,
         secs: 60.0,
         coordinates: 11,
         characters_each: 32,
@@ -53,6 +56,7 @@ impl Effort {
     /// Less than a minute on two idle cores, for a first look.
     pub const QUICK: Effort = Effort {
         characters: 32,
+        characters_uneven: 16,
         secs: 20.0,
         coordinates: 5,
         characters_each: 8,

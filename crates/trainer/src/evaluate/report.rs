@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 use std::sync::Arc;
 
 use glam::Vec3;
-use physics_bridge::Model;
+use physics_bridge::{Model, ModelError, Terrain};
 use policy_core::{BlendMode, CharacterPack, CharacterState};
 use serde::Serialize;
 
@@ -52,9 +52,14 @@ pub struct PathReport {
     /// By blend mode.
     #[serde(flatten)]
     pub modes: BTreeMap<String, ModeReport>,
+    /// By ground, [`GROUNDS`], blending parameters.
+    pub grounds: BTreeMap<String, ModeReport>,
     /// At fixed coordinates, blending parameters.
     pub speed: Vec<SpeedPoint>,
 }
+
+/// The uneven grounds that paths are measured on too, by the names that the demo has for them.
+pub const GROUNDS: [(&str, Terrain); 2] = [("wavy", Terrain::hills(7)), ("steps", Terrain::low_steps())];
 
 /// Measures of one blend mode.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
@@ -89,14 +94,16 @@ pub struct PushReport {
 
 /// Measures everything; `note` is told what comes next. `clips` holds the states of each skill's clips, see
 /// [`clip_states`](super::clip_states); without them there is no pose error.
-#[must_use]
+///
+/// # Errors
+/// When the model can't be set on uneven ground.
 pub fn evaluate(
     model: &Model,
     pack: &Arc<CharacterPack>,
     effort: &Effort,
     clips: &BTreeMap<String, Vec<CharacterState>>,
     mut note: impl FnMut(&str),
-) -> Evaluation {
+) -> Result<Evaluation, ModelError> {
     let graph = pack.graph();
     let mut evaluation = Evaluation::default();
     for edge in graph.edges() {
@@ -105,12 +112,21 @@ pub fn evaluate(
         let distance = pack.policies()[a].squared_distance(&pack.policies()[b]);
         evaluation.parameter_distance.insert(name, distance);
     }
+    let mut grounds = Vec::new();
+    for (name, terrain) in GROUNDS {
+        grounds.push((name, model.with_terrain(terrain)?));
+    }
     for (index, path) in graph.paths().iter().enumerate() {
         note(&format!("path {}", path.name));
         let mut report = PathReport::default();
         for mode in BlendMode::ALL {
             let swept = measure_sweep(model, pack, index, mode, (effort.characters, effort.secs));
             report.modes.insert(mode.name().into(), swept);
+        }
+        for (ground, model) in &grounds {
+            let walkers = (effort.characters_uneven, effort.secs);
+            let swept = measure_sweep(model, pack, index, BlendMode::Parameters, walkers);
+            report.grounds.insert((*ground).into(), swept);
         }
         for i in 0..effort.coordinates {
             let coordinate = path.end() * i as f32 / (effort.coordinates - 1).max(1) as f32;
@@ -164,7 +180,7 @@ pub fn evaluate(
         evaluation.skills.insert(skill.name.clone(), report);
     }
     evaluation.roll = evaluation.skills.get("roll").copied();
-    evaluation
+    Ok(evaluation)
 }
 
 /// Speed commanded at a coordinate: that of the nodes, interpolated.

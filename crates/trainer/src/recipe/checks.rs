@@ -169,6 +169,7 @@ impl Recipe {
             (
                 [
                     env.height,
+                    env.strict_facing,
                     env.sweep,
                     env.stop,
                     env.stick,
@@ -181,11 +182,11 @@ impl Recipe {
                 ]
                 .into_iter()
                 .all(unit),
-                "environment.height, sweep, stop, stick, jump and start",
+                "environment.height, strict_facing, sweep, stop, stick, jump and start",
                 "shares in [0, 1]",
                 format!(
-                    "{}, {}, {}, {}, {} and {:?}",
-                    env.height, env.sweep, env.stop, env.stick, env.jump, env.start
+                    "{}, {}, {}, {}, {}, {} and {:?}",
+                    env.height, env.strict_facing, env.sweep, env.stop, env.stick, env.jump, env.start
                 ),
             ),
             (

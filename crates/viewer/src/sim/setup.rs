@@ -50,8 +50,8 @@ impl Ground {
     fn terrain(self, seed: u32) -> Terrain {
         match self {
             Ground::Flat => Terrain::Flat,
-            Ground::Wavy => Terrain::Wavy { height_m: 0.35, wavelength_m: 9.0, seed },
-            Ground::Steps => Terrain::Steps { rise_m: 0.05, run_m: 1.2, count: 6 },
+            Ground::Wavy => Terrain::hills(seed),
+            Ground::Steps => Terrain::low_steps(),
         }
     }
 }
