@@ -234,6 +234,16 @@ fn the_pack_acts_as_the_trainer(pack: &CharacterPack, ingredients: &[Ingredient]
 }
 
 #[test]
+fn a_phase_has_its_own_settings_until_it_ends() {
+    let text = "skill = \"a\"\nclips = [{ name = \"walk\" }]\n[[phases]]\nsamples = 10\ntask = 0.5\nquiet = 0.25\nother = 0.5\n\
+        [[phases]]\nsamples = 10\ntask = 0.5\n[environment]\nquiet = 0.125\n";
+    let recipe = Recipe::parse(Path::new("x.toml"), text).unwrap();
+    let at =
+        |samples: u64| (recipe.environment_at(samples).quiet, recipe.environment_at(samples).start.other);
+    assert_eq!([at(0), at(9), at(10), at(99)], [(0.25, 0.5), (0.25, 0.5), (0.125, 0.0), (0.125, 0.0)]);
+}
+
+#[test]
 fn unknown_fields_and_senseless_values_are_named() {
     let parse = |text: &str| Recipe::parse(Path::new("x.toml"), text).unwrap_err().to_string();
     let good = "skill = \"a\"\nclips = [{ name = \"walk\" }]\n[[phases]]\nsamples = 1\ntask = 0.5\n";
@@ -254,6 +264,7 @@ fn unknown_fields_and_senseless_values_are_named() {
     assert!(parse(&format!("{together}{}", after.replace("0.1", "1.5"))).contains("start.after"));
     assert!(parse(&good.replace("0.5", "0.5\nfall_cost = -1.0")).contains("fall_cost"));
     assert!(parse(&good.replace("0.5", "0.5\nmishap = 1.5")).contains("mishap"));
+    assert!(parse(&good.replace("0.5", "0.5\nquiet = 1.0")).contains("quiet"));
     assert!(parse(&good.replace("0.5", "0.5\nmishap = 0.5\nimitation = 0.5")).contains("mishap"));
     assert!(parse(&format!("{good}[environment]\nleast_width_mps = 0.0\n")).contains("least_width_mps"));
     assert!(parse(&good.replace("\"a\"", "\"../a\"")).contains("skill"));

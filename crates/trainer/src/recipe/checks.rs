@@ -88,10 +88,11 @@ impl Recipe {
                 env.slide_cost.to_string(),
             ),
             (
-                (0.0..1.0).contains(&env.quiet) && ordered(env.quiet_secs),
-                "environment.quiet and quiet_secs",
+                self.phases.iter().all(|p| (0.0..1.0).contains(&p.quiet.unwrap_or(env.quiet)))
+                    && ordered(env.quiet_secs),
+                "quiet and environment.quiet_secs",
                 "a share below 1, and seconds from least to most",
-                format!("{} and {:?}", env.quiet, env.quiet_secs),
+                format!("{}, {:?} and {:?}", env.quiet, env.quiet_secs, self.phases),
             ),
             (
                 unit(env.imitators) && (env.imitators == 0.0 || !self.paths.is_empty()),
