@@ -108,6 +108,9 @@ pub struct Phase {
     /// Share of episodes that start before a failure in this phase, where it is another than `environment.start.mishap`.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub mishap: Option<f32>,
+    /// True for a phase of a recipe with an edge that keeps to the skill itself: first it is learned, then the way to it.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub alone: Option<bool>,
     /// Share of the time without noise in this phase, where it is another than `environment.quiet`.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub quiet: Option<f32>,
@@ -192,6 +195,7 @@ impl Recipe {
         now.fall_cost = phase.fall_cost.unwrap_or(now.fall_cost);
         now.start.mishap = phase.mishap.unwrap_or(now.start.mishap);
         now.start.other = phase.other.unwrap_or(now.start.other);
+        now.alone = phase.alone.unwrap_or(now.alone);
         now.quiet = phase.quiet.unwrap_or(now.quiet);
         now
     }

@@ -102,7 +102,8 @@ fn scatter(
         let all = points.iter().flatten().map(|p| p[axis]);
         let (low, high) = all.fold((f64::MAX, f64::MIN), |(low, high), x| (low.min(x), high.max(x)));
         let margin = 0.05 * (high - low).max(1e-3);
-        low - margin..high + margin
+        // Room for the legend on the right, where it covers nothing.
+        low - margin..high + if axis == 0 { 6.0 * margin } else { margin }
     };
     let root = SVGBackend::new(path, (800, 600)).into_drawing_area();
     root.fill(&WHITE)?;
@@ -127,7 +128,7 @@ fn scatter(
     }
     chart
         .configure_series_labels()
-        .position(SeriesLabelPosition::UpperLeft)
+        .position(SeriesLabelPosition::UpperRight)
         .background_style(WHITE.mix(0.8))
         .border_style(BLACK.mix(0.3))
         .draw()?;

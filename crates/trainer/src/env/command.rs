@@ -48,6 +48,9 @@ impl Command {
     #[must_use]
     pub fn start(config: &EnvironmentConfig, course: &Course, at_node: bool, rng: &mut Rng) -> Self {
         let path = rng.index(course.paths());
+        if config.alone {
+            return Self::at(course, path, course.end(path));
+        }
         let coordinate = if at_node { course.draw_node(path, rng) } else { course.draw(path, rng) };
         let mut command = Self::at(course, path, coordinate);
         // Half of the others move.

@@ -24,6 +24,20 @@ fn on_a_single_node_the_blend_stays() {
 }
 
 #[test]
+fn alone_it_stays_at_the_end_of_an_edge() {
+    let config = EnvironmentConfig { alone: true, ..EnvironmentConfig::default() };
+    let (course, mut rng) = (edge(), Rng::new(5, 1));
+    for _ in 0..20 {
+        let mut command = Command::start(&config, &course, false, &mut rng);
+        command.aim(&config, &course, (Vec2::ZERO, 0.0), &mut rng);
+        for _ in 0..100 {
+            command.advance(&config, &course, Vec2::ZERO, |_| false, &mut rng);
+            assert_eq!(command.place, Place { edge: 0, t: 1.0 });
+        }
+    }
+}
+
+#[test]
 fn blends_and_targets_stay_in_range_and_are_renewed() {
     let (config, course, mut rng) = (EnvironmentConfig::default(), edge(), Rng::new(2, 1));
     let (mut at_child, mut targets, mut count) = (0, 0, 0);

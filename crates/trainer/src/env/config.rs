@@ -131,6 +131,8 @@ pub struct EnvironmentConfig {
     pub jump: f32,
     /// Seconds that the place on the course takes at least to cross an edge of this skill, as in a pack; 0 for none.
     pub edge_secs: f32,
+    /// True to stay at the end of the path: of an edge, at the skill itself.
+    pub alone: bool,
     /// Where episodes start.
     pub start: Start,
     /// Mean seconds between pushes of 0.2 s on the pelvis; zero for none.
@@ -169,6 +171,7 @@ impl Default for EnvironmentConfig {
             edge_rest_secs: [0.0, 2.0],
             jump: 0.15,
             edge_secs: 0.0,
+            alone: false,
             start: Start::default(),
             push_secs: 0.0,
             push_newton: 0.0,

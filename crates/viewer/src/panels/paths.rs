@@ -1,6 +1,6 @@
 //! Every path as a ruler: two cursors, asked for and so; drag to override the trigger, click a node to walk there.
 
-use egui::{Align2, FontId, Pos2, Rect, Sense, Stroke, Ui, pos2, vec2};
+use egui::{FontId, Pos2, Rect, Sense, Stroke, Ui, pos2, vec2};
 use policy_core::{Goal, Path};
 
 use super::{PRESENT, REQUESTED};
@@ -79,8 +79,13 @@ fn draw(ui: &Ui, app: &App, path: &Path, place: &impl Fn(f32) -> Pos2) {
         let at = place(i as f32);
         painter.circle(at, 5.0, ui.visuals().extreme_bg_color, Stroke::new(1.5, ui.visuals().text_color()));
         let name = &app.sim.pack().graph().nodes()[node].name;
-        let below = at + vec2(0.0, 12.0);
-        painter.text(below, Align2::CENTER_TOP, name, FontId::proportional(12.0), ui.visuals().text_color());
+        let label =
+            painter.layout_no_wrap(name.clone(), FontId::proportional(12.0), ui.visuals().text_color());
+        // Centred, but a long name at an end stays inside the panel.
+        let inside = ui.max_rect();
+        let most = (inside.right() - label.size().x).max(inside.left());
+        let left = (at.x - 0.5 * label.size().x).clamp(inside.left(), most);
+        painter.galley(pos2(left, at.y + 12.0), label, ui.visuals().text_color());
     }
 }
 
