@@ -176,7 +176,7 @@ mod tests {
         assert!((at(0.0, 1.0) - 1.0).abs() < 1e-6 && (at(180.0, 0.5) - 0.7).abs() < 1e-4);
         // 0.3 of 30 degrees in 180, and of a bell of 0.4 radians.
         assert!((at(30.0, 0.0) - 0.95).abs() < 1e-4);
-        assert!((at(30.0, 1.0) - (0.7 + 0.3 * (-(0.5236_f32 / 0.4).powi(2)).exp())).abs() < 1e-4);
+        assert!((at(30.0, 1.0) - (0.7 + 0.3 * (-(30.0_f32.to_radians() / 0.4).powi(2)).exp())).abs() < 1e-4);
         assert!((at(30.0, 0.5) - 0.5 * (at(30.0, 0.0) + at(30.0, 1.0))).abs() < 1e-6);
     }
 
