@@ -56,12 +56,12 @@ impl Effort {
     /// Less than a minute on two idle cores, for a first look.
     pub const QUICK: Effort = Effort {
         characters: 32,
-        characters_uneven: 16,
+        characters_uneven: 8,
         secs: 20.0,
         coordinates: 5,
         characters_each: 8,
         drops: 64,
-        pushed: 16,
+        pushed: 5,
         layered: 1,
     };
 }
