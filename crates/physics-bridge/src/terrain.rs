@@ -55,18 +55,6 @@ pub(crate) struct Grid {
 }
 
 impl Terrain {
-    /// Hills to walk over at ease: 0.35 m high, 9 m from crest to crest; `seed` places them.
-    #[must_use]
-    pub const fn hills(seed: u32) -> Self {
-        Terrain::Wavy { height_m: 0.35, wavelength_m: 9.0, seed }
-    }
-
-    /// Low, broad steps to walk over at ease: six of 0.05 m up and down again, 1.2 m deep.
-    #[must_use]
-    pub const fn low_steps() -> Self {
-        Terrain::Steps { rise_m: 0.05, run_m: 1.2, count: 6 }
-    }
-
     /// Checks every number against its range.
     pub(crate) fn check(&self) -> Result<(), ModelError> {
         match *self {
@@ -161,15 +149,6 @@ mod tests {
                 .iter()
                 .all(|&(r, c)| grid.heights[r * grid.side + c] == 0.0)
         })
-    }
-
-    #[test]
-    fn named_grounds_can_be_made_and_are_no_cliffs() {
-        for (terrain, highest) in [(Terrain::hills(3), 0.35), (Terrain::low_steps(), 0.3)] {
-            terrain.check().unwrap();
-            let grid = terrain.grid().unwrap();
-            assert!(grid.highest > 0.5 * highest && grid.highest <= highest + 1e-6, "{}", grid.highest);
-        }
     }
 
     #[test]

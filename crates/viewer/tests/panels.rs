@@ -10,7 +10,7 @@ use policy_core::{BlendMode, Button, Goal};
 use viewer::analysis::Analysis;
 use viewer::app::{App, Failure, PanelKind, Preset, Record, Side};
 use viewer::camera::CameraMode;
-use viewer::sim::Ground;
+use viewer::sim::GroundKind;
 
 fn harness(app: App) -> Harness<'static, App> {
     Harness::builder()
@@ -199,7 +199,7 @@ fn physics_pauses_steps_goes_back_and_changes_the_ground() {
     assert_eq!(harness.state().sim.player().state, here);
     assert_eq!(harness.state().sim.history().1, 1);
     click(&mut harness, "wavy");
-    assert_eq!(harness.state().sim.config().ground, Ground::Wavy);
+    assert_eq!(harness.state().sim.config().ground, GroundKind::Wavy);
     assert!(harness.state().sim.model().height_field().is_some());
     click(&mut harness, "Go on");
     assert!(!harness.state().clock.paused);

@@ -10,7 +10,7 @@ use viewer::assets;
 use viewer::desk::Desk;
 use viewer::mesh::SkinnedMesh;
 use viewer::render::{OffScreen, RenderConfig, Renderer, SHADERS, Scene};
-use viewer::sim::{Ground, SimConfig};
+use viewer::sim::{GroundKind, SimConfig};
 use viewer::stage::{Shown, Trail, ground_grid, set_scene};
 
 const SIZE: [u32; 2] = [320, 240];
@@ -78,7 +78,7 @@ fn the_standing_mannequin_looks_as_it_did() {
 fn hills_and_a_crowd_look_as_they_did() {
     let Some(gpu) = gpu() else { return };
     let mut app = App::new(simulation(), Layout::default());
-    app.sim.rebuild(SimConfig { ground: Ground::Wavy, characters: 12, ..SimConfig::default() }).unwrap();
+    app.sim.rebuild(SimConfig { ground: GroundKind::Wavy, characters: 12, ..SimConfig::default() }).unwrap();
     (app.camera.distance, app.camera.pitch) = (9.0, 0.45);
     app.follow(10.0, 1.0);
     compare(&gpu, &draw(&gpu, &app, &Shown::default()), "hills_and_crowd", SCENE);

@@ -87,9 +87,9 @@ pub fn target_reward(state: &CharacterState, velocity: Vec2, target: Vec2, manne
     let error = ((along - commanded_mps).powi(2) + 0.25 * sideways * sideways) / (width * width);
     // Close by, which way the target lies says nothing.
     let aside = facing_now.angle_to(direction);
-    let (evenly, bell) =
-        (aside.abs() / std::f32::consts::PI, 1.0 - (-(aside / STRICT_FACING_RADIANS).powi(2)).exp());
-    let facing = 1.0 - near * (evenly + manner.strict_facing * (bell - evenly));
+    let evenly = aside.abs() / std::f32::consts::PI;
+    let steeply = 1.0 - (-(aside / STRICT_FACING_RADIANS).powi(2)).exp();
+    let facing = 1.0 - near * (evenly + manner.strict_facing * (steeply - evenly));
     let speed = 0.4 * (-2.0 * error).exp() + 0.3 * (-2.0 * error / 9.0).exp();
     RewardTerms { task: speed + 0.3 * facing, speed_mps: along, commanded_mps, ..RewardTerms::default() }
 }

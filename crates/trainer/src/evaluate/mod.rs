@@ -14,7 +14,7 @@ pub use layers::{LayerReport, measure_layers, watch_layers};
 pub use motion::{MotionReport, STANCE_METRES, clip_states, pose_error, watch};
 pub use paths::{measure_coordinates, measure_sweep};
 pub use push::measure_push;
-pub use report::{Evaluation, GROUNDS, ModeReport, PathReport, PushReport, SpeedPoint, evaluate};
+pub use report::{Evaluation, ModeReport, PathReport, PushReport, SpeedPoint, evaluate};
 pub use skills::{RateReport, measure_get_up, measure_skill, watch_skill};
 pub use subject::{Subject, Wanderer};
 pub use upright::{UprightReport, measure_upright};

@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 use std::sync::Arc;
 
 use glam::Vec3;
-use physics_bridge::{Model, ModelError, Terrain};
+use physics_bridge::{GroundKind, Model, ModelError};
 use policy_core::{BlendMode, CharacterPack, CharacterState};
 use serde::Serialize;
 
@@ -52,14 +52,14 @@ pub struct PathReport {
     /// By blend mode.
     #[serde(flatten)]
     pub modes: BTreeMap<String, ModeReport>,
-    /// By ground, [`GROUNDS`], blending parameters.
+    /// By ground that is not flat, see [`GroundKind::name`], blending parameters.
     pub grounds: BTreeMap<String, ModeReport>,
     /// At fixed coordinates, blending parameters.
     pub speed: Vec<SpeedPoint>,
 }
 
-/// The uneven grounds that paths are measured on too, by the names that the demo has for them.
-pub const GROUNDS: [(&str, Terrain); 2] = [("wavy", Terrain::hills(7)), ("steps", Terrain::low_steps())];
+/// Places the hills that paths are measured on too.
+const HILLS_SEED: u32 = 7;
 
 /// Measures of one blend mode.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
@@ -113,8 +113,8 @@ pub fn evaluate(
         evaluation.parameter_distance.insert(name, distance);
     }
     let mut grounds = Vec::new();
-    for (name, terrain) in GROUNDS {
-        grounds.push((name, model.with_terrain(terrain)?));
+    for kind in GroundKind::ALL.into_iter().filter(|kind| *kind != GroundKind::Flat) {
+        grounds.push((kind.name(), model.with_terrain(kind.terrain(HILLS_SEED))?));
     }
     for (index, path) in graph.paths().iter().enumerate() {
         note(&format!("path {}", path.name));

@@ -6,7 +6,7 @@ use policy_core::{BlendMode, Goal};
 
 use super::{Grab, Layers, PanelKind, Preset};
 use crate::camera::CameraMode;
-use crate::sim::Ground;
+use crate::sim::GroundKind;
 use crate::stage::Shown;
 
 /// What to record.
@@ -55,7 +55,7 @@ pub enum ViewerCommand {
     /// Gravity, friction, strength.
     Settings(Settings),
     /// Another ground.
-    Ground(Ground),
+    Ground(GroundKind),
     /// So many characters.
     Characters(usize),
     /// Pull a body, or let go.

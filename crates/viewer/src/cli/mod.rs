@@ -14,7 +14,7 @@ use clap::{Args, Parser, Subcommand};
 use policy_core::BlendMode;
 
 use crate::app::{App, PanelKind};
-use crate::sim::{Ground, MAX_CHARACTERS};
+use crate::sim::{GroundKind, MAX_CHARACTERS};
 
 /// Steer a physics-based humanoid by blending the parameters of tiny policies.
 #[derive(Debug, Parser)]
@@ -128,7 +128,7 @@ pub struct Demo {
     pub ghost: Option<BlendMode>,
     /// The ground: flat, wavy or steps.
     #[arg(long, default_value = "flat", value_parser = ground)]
-    pub terrain: Ground,
+    pub terrain: GroundKind,
     /// Number of characters, 1 to 200.
     #[arg(long, default_value_t = 1, value_name = "N", value_parser = characters)]
     pub characters: usize,
@@ -218,9 +218,9 @@ fn mode(text: &str) -> Result<BlendMode, String> {
     BlendMode::from_name(text).ok_or_else(|| format!("expected one of {names}"))
 }
 
-fn ground(text: &str) -> Result<Ground, String> {
-    let names = Ground::ALL.map(Ground::name).join(", ");
-    Ground::from_name(text).ok_or_else(|| format!("expected one of {names}"))
+fn ground(text: &str) -> Result<GroundKind, String> {
+    let names = GroundKind::ALL.map(GroundKind::name).join(", ");
+    GroundKind::from_name(text).ok_or_else(|| format!("expected one of {names}"))
 }
 
 #[cfg(test)]

@@ -3,14 +3,14 @@
 use egui::{Slider, Ui};
 
 use crate::app::{App, Clock, ViewerCommand};
-use crate::sim::{Ground, MAX_CHARACTERS, TICK_SECS};
+use crate::sim::{GroundKind, MAX_CHARACTERS, TICK_SECS};
 
 pub(super) fn show(ui: &mut Ui, app: &App, commands: &mut Vec<ViewerCommand>) {
     time(ui, app, commands);
     matter(ui, app, commands);
     ui.horizontal(|ui| {
         ui.label("Ground");
-        for ground in Ground::ALL {
+        for ground in GroundKind::ALL {
             if ui.selectable_label(app.sim.config().ground == ground, ground.name()).clicked() {
                 commands.push(ViewerCommand::Ground(ground));
             }

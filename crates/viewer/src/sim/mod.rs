@@ -21,8 +21,9 @@ use policy_core::{
 pub use actor::{Actor, interpolated};
 pub use error::SimError;
 pub use ghost::Ghost;
+pub use physics_bridge::GroundKind;
 pub use playback::Playback;
-pub use setup::{Ground, MAX_CHARACTERS, SimConfig};
+pub use setup::{MAX_CHARACTERS, SimConfig};
 pub use totals::{StateHash, Totals};
 
 /// Seconds a character without a skill to rise lies before it is stood up again.

@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use glam::Vec2;
-use physics_bridge::{Character, Crowd, HISTORY_SECS, Model, Terrain};
+use physics_bridge::{Character, Crowd, GroundKind, HISTORY_SECS, Model};
 use policy_core::{Bindings, Buttons, CharacterPack, CommandMapper, Heading};
 
 use super::{Actor, Overrides, SimError, Simulation, TickTimes, Totals};
@@ -15,52 +15,11 @@ const MAX_HISTORIES: usize = 16;
 /// Distance between neighbours at the start, metres.
 const SPACING: f32 = 1.3;
 
-/// Kinds of ground to choose from.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum Ground {
-    /// A plane.
-    #[default]
-    Flat,
-    /// Low hills.
-    Wavy,
-    /// Flights of low steps.
-    Steps,
-}
-
-impl Ground {
-    /// All kinds.
-    pub const ALL: [Ground; 3] = [Ground::Flat, Ground::Wavy, Ground::Steps];
-
-    /// Name for command lines and panels.
-    #[must_use]
-    pub const fn name(self) -> &'static str {
-        match self {
-            Ground::Flat => "flat",
-            Ground::Wavy => "wavy",
-            Ground::Steps => "steps",
-        }
-    }
-
-    /// The kind called `name`.
-    #[must_use]
-    pub fn from_name(name: &str) -> Option<Self> {
-        Self::ALL.into_iter().find(|g| g.name() == name)
-    }
-
-    fn terrain(self, seed: u32) -> Terrain {
-        match self {
-            Ground::Flat => Terrain::Flat,
-            Ground::Wavy => Terrain::hills(seed),
-            Ground::Steps => Terrain::low_steps(),
-        }
-    }
-}
-
 /// What a world is made of.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct SimConfig {
     /// The ground.
-    pub ground: Ground,
+    pub ground: GroundKind,
     /// Characters, 1 to [`MAX_CHARACTERS`].
     pub characters: usize,
     /// Places the hills and turns the crowd.
@@ -71,7 +30,7 @@ pub struct SimConfig {
 
 impl Default for SimConfig {
     fn default() -> Self {
-        Self { ground: Ground::Flat, characters: 1, seed: 1, history: false }
+        Self { ground: GroundKind::Flat, characters: 1, seed: 1, history: false }
     }
 }
 
