@@ -1,45 +1,55 @@
-//! The character pack: everything a character needs at run time but its body, checked and immutable.
+//! The character pack: everything that a character needs at run time, checked and immutable.
 
 use alloc::string::{String, ToString};
+use alloc::sync::Arc;
 use alloc::vec::Vec;
 
 use crate::action::ActionScaling;
-use crate::body::{BODY_NAMES, DOF_COUNT, JOINT_NAMES};
-use crate::features::{DISCRIMINATOR_INPUT_LEN, FRAME_LEN};
-use crate::graph::{GraphError, Node, Path, PolicyGraph, check_names};
-use crate::manifest::{
-    DISCRIMINATOR_LAYOUT, EdgeEntry, Manifest, OBSERVATION_LAYOUT, PACK_FORMAT, PACK_VERSION, PathEntry,
-    SkillEntry,
+use crate::actuation::ActuationContract;
+use crate::features::FRAME_AGES;
+use crate::format::{
+    CreditEntry, DISCRIMINATOR_LAYOUT, EdgeEntry, EndEntry, MAX_NAME_BYTES, Manifest, OBSERVATION_LAYOUT,
+    PACK_FORMAT, PACK_VERSION, SkeletonEntry, SkillEntry,
 };
+use crate::graph::{GraphError, MAX_NODES, Node, PolicyGraph, check_names};
+use crate::ids::{BodyId, DiscriminatorId, NodeId, PolicyId, SkillId};
 use crate::mlp::Mlp;
 use crate::normaliser::Normaliser;
-use crate::observation::{OBSERVATION_LEN, POLICY_INPUT_LEN};
 use crate::pack_error::PackError;
+use crate::skeleton::{Roles, Skeleton, SkeletonBody, SkeletonJoint};
 use crate::skill::{EndCondition, Skill};
+
+/// Most skills and most discriminators of a pack.
+const MAX_SKILLS: usize = 64;
 
 /// The numbers of a pack; the manifest says what they are.
 #[derive(Clone, Debug, PartialEq)]
 pub struct PackTensors {
-    /// One network for each policy of the manifest, all of one shape: 225 inputs, 28 outputs.
+    /// One network for each policy of the manifest, all of one shape: from [`Skeleton::policy_input_len`] inputs to one
+    /// output for each joint.
     pub policies: Vec<Mlp>,
-    /// One network for each discriminator of the manifest: 625 inputs, 1 output (a logit).
+    /// One network for each discriminator of the manifest: [`Skeleton::discriminator_input_len`] inputs, 1 output (a
+    /// logit).
     pub discriminators: Vec<Mlp>,
-    /// Of the 223 observations.
+    /// Of the observation: [`Skeleton::observation_len`] numbers.
     pub observation_normaliser: Normaliser,
-    /// Of the 125 features of a frame.
+    /// Of the features of one frame: [`Skeleton::frame_len`] numbers.
     pub discriminator_normaliser: Normaliser,
+    /// The skinned mesh, a binary glTF file. Its nodes are named like the bodies. Not checked here.
+    pub mesh: Option<Vec<u8>>,
 }
 
-/// Every policy, discriminator and skill of one character, and the graph that joins them.
+/// Every policy, discriminator and skill of one character, the graph that joins them, and its body.
 ///
 /// Immutable: share one pack between all characters (`Arc`). [`CharacterPack::from_bytes`] reads one.
 #[derive(Clone, Debug)]
 pub struct CharacterPack {
     manifest: Manifest,
     tensors: PackTensors,
+    skeleton: Arc<Skeleton>,
     graph: PolicyGraph,
     skills: Vec<Skill>,
-    recovery: Option<usize>,
+    recovery: Option<SkillId>,
     action: ActionScaling,
 }
 
@@ -49,32 +59,33 @@ impl CharacterPack {
     /// # Errors
     /// When anything is not as the manifest or this library says; see [`PackError`].
     pub fn from_parts(manifest: Manifest, tensors: PackTensors) -> Result<Self, PackError> {
-        check_fixed_fields(&manifest)?;
-        check_networks(&manifest, &tensors)?;
-        let nodes: Vec<Node> = manifest
-            .policies
-            .iter()
-            .map(|p| Node { name: p.name.clone(), fall_height: p.fall_height, speed_mps: p.speed_mps })
-            .collect();
-        let names: Vec<&str> = nodes.iter().map(|n| n.name.as_str()).collect();
-        check_names("policy", names.iter().copied())?;
-        check_names("skill", manifest.skills.iter().map(|s| s.name.as_str()))?;
+        check_manifest(&manifest)?;
+        let skeleton = skeleton(&manifest.skeleton)?;
+        check_networks(&manifest, &tensors, &skeleton)?;
+        let names: Vec<&str> = manifest.policies.iter().map(|p| p.name.as_str()).collect();
+        let nodes = manifest.policies.iter().map(|p| Node {
+            name: p.name.clone(),
+            fall_height: p.fall_height,
+            speed_mps: p.speed_mps,
+        });
         let edges = manifest.edges.iter().map(|e| edge(e, &names)).collect::<Result<Vec<_>, _>>()?;
-        let paths = manifest.paths.iter().map(|p| path(p, &names)).collect::<Result<Vec<_>, _>>()?;
+        let paths = manifest.paths.iter().map(|path| {
+            let field = || alloc::format!("path \"{}\"", path.name);
+            let nodes = path.nodes.iter().map(|n| find_node(field(), n, &names)).collect::<Result<_, _>>()?;
+            Ok((path.name.clone(), nodes))
+        });
+        let paths = paths.collect::<Result<Vec<_>, PackError>>()?;
         let skills =
             manifest.skills.iter().map(|s| skill(s, &names, &manifest)).collect::<Result<Vec<_>, _>>()?;
+        let mut skill_names = manifest.skills.iter().map(|s| s.name.as_str());
         let recovery = match &manifest.recovery {
             None => None,
-            Some(name) => {
-                Some(find("skill", "recovery", name, manifest.skills.iter().map(|s| s.name.as_str()))?)
-            }
+            Some(name) => Some(SkillId::new(find("skill", "recovery", name, &mut skill_names)?)),
         };
-        let action = ActionScaling::from_centre_and_gain(
-            joint_numbers("action_centre", &manifest.action_centre)?,
-            joint_numbers("action_gain", &manifest.action_gain)?,
-        )?;
-        let graph = PolicyGraph::from_parts(nodes, &edges, paths, &tensors.policies)?;
-        Ok(Self { manifest, tensors, graph, skills, recovery, action })
+        let action = action_scaling(&manifest, &skeleton)?;
+        let graph = PolicyGraph::from_parts(nodes.collect(), &edges, paths, &tensors.policies)?;
+        check_reachable(&graph, &skills)?;
+        Ok(Self { manifest, tensors, skeleton: Arc::new(skeleton), graph, skills, recovery, action })
     }
 
     /// The description the pack was made of.
@@ -107,16 +118,64 @@ impl CharacterPack {
         &self.skills
     }
 
-    /// Index of the skill called `name`.
+    /// The skill called `name`.
     #[must_use]
-    pub fn skill_named(&self, name: &str) -> Option<usize> {
-        self.skills.iter().position(|s| s.name == name)
+    pub fn skill_named(&self, name: &str) -> Option<SkillId> {
+        self.skills.iter().position(|s| s.name == name).map(SkillId::new)
     }
 
-    /// Index of the skill that brings a fallen character to its feet.
+    /// The policy called `name`.
     #[must_use]
-    pub fn recovery(&self) -> Option<usize> {
+    pub fn policy_named(&self, name: &str) -> Option<PolicyId> {
+        self.graph.node_named(name).map(PolicyId::from)
+    }
+
+    /// The skill that brings a fallen character to its feet.
+    #[must_use]
+    pub fn recovery(&self) -> Option<SkillId> {
         self.recovery
+    }
+
+    /// Bodies and joints.
+    #[must_use]
+    pub fn skeleton(&self) -> &Arc<Skeleton> {
+        &self.skeleton
+    }
+
+    /// Control ticks per second that the policies were trained at, in [1, 1000].
+    #[must_use]
+    pub fn control_hz(&self) -> f32 {
+        self.manifest.control_hz
+    }
+
+    /// How the motors were driven in training. Packs of version 1 don't say.
+    #[must_use]
+    pub fn actuation(&self) -> Option<&ActuationContract> {
+        self.manifest.actuation.as_ref()
+    }
+
+    /// The body as MJCF text. Packs of version 1 have none.
+    #[must_use]
+    pub fn mjcf(&self) -> Option<&str> {
+        self.manifest.mjcf.as_deref()
+    }
+
+    /// The skinned mesh, a binary glTF file.
+    #[must_use]
+    pub fn mesh(&self) -> Option<&[u8]> {
+        self.tensors.mesh.as_deref()
+    }
+
+    /// Where the motion comes from and under which licence.
+    #[must_use]
+    pub fn credits(&self) -> &[CreditEntry] {
+        &self.manifest.credits
+    }
+
+    /// True for a pack that was read from a file with a checksum, which was right. A file without one is read too.
+    #[must_use]
+    pub fn is_verified(&self) -> bool {
+        self.manifest.checksum.is_some()
     }
 
     /// How actions become joint targets.
@@ -126,7 +185,8 @@ impl CharacterPack {
     }
 }
 
-fn check_fixed_fields(m: &Manifest) -> Result<(), PackError> {
+/// Checks the fixed fields, counts and names: all that bounds what the rest may cost.
+pub(crate) fn check_manifest(m: &Manifest) -> Result<(), PackError> {
     let field = |field, expected: String, found: String| match expected == found {
         true => Ok(()),
         false => Err(PackError::Field { field, expected, found }),
@@ -135,43 +195,121 @@ fn check_fixed_fields(m: &Manifest) -> Result<(), PackError> {
     field("version", PACK_VERSION.to_string(), m.version.to_string())?;
     field("observation", OBSERVATION_LAYOUT.into(), m.observation.clone())?;
     field("discriminator", DISCRIMINATOR_LAYOUT.into(), m.discriminator.clone())?;
-    field("bodies", BODY_NAMES.join(" "), m.bodies.join(" "))?;
-    field("joints", JOINT_NAMES.join(" "), m.joints.join(" "))?;
-    if m.control_hz.is_finite() && (1.0..=1000.0).contains(&m.control_hz) {
-        return Ok(());
+    let counts = [
+        ("policies", m.policies.len(), MAX_NODES),
+        ("edges", m.edges.len(), MAX_NODES * MAX_NODES),
+        ("paths", m.paths.len(), MAX_NODES),
+        ("discriminators", m.discriminators.len(), MAX_SKILLS),
+        ("skills", m.skills.len(), MAX_SKILLS),
+    ];
+    if let Some(&(what, found, most)) = counts.iter().find(|(_, found, most)| found > most) {
+        return Err(PackError::TooMany { what, most, found });
     }
-    let (owner, expected) = ("the pack".into(), "1 to 1000");
-    Err(PackError::Number { field: "control_hz", owner, expected, found: m.control_hz })
+    let names = m.policies.iter().map(|p| ("policy", &p.name));
+    let names = names.chain(m.paths.iter().map(|p| ("path", &p.name)));
+    let names = names.chain(m.discriminators.iter().map(|d| ("discriminator", &d.name)));
+    let mut names = names.chain(m.skills.iter().map(|s| ("skill", &s.name)));
+    if let Some((kind, name)) = names.find(|(_, name)| name.len() > MAX_NAME_BYTES) {
+        return Err(PackError::LongName { kind, most: MAX_NAME_BYTES, found: name.len() });
+    }
+    check_names("policy", m.policies.iter().map(|p| p.name.as_str()))?;
+    check_names("discriminator", m.discriminators.iter().map(|d| d.name.as_str()))?;
+    check_names("skill", m.skills.iter().map(|s| s.name.as_str()))?;
+    if !(1.0..=1000.0).contains(&m.control_hz) {
+        let (owner, expected) = ("the pack".into(), "1 to 1000");
+        return Err(PackError::Number { field: "control_hz", owner, expected, found: m.control_hz });
+    }
+    Ok(())
 }
 
-fn check_networks(m: &Manifest, t: &PackTensors) -> Result<(), PackError> {
+fn check_networks(m: &Manifest, t: &PackTensors, skeleton: &Skeleton) -> Result<(), PackError> {
     let count = |what, expected, found| match expected == found {
         true => Ok(()),
         false => Err(PackError::Count { what, expected, found }),
     };
     count("policies", m.policies.len(), t.policies.len())?;
     count("discriminators", m.discriminators.len(), t.discriminators.len())?;
-    count("means in the observation normaliser", OBSERVATION_LEN, t.observation_normaliser.len())?;
-    count("means in the discriminator normaliser", FRAME_LEN, t.discriminator_normaliser.len())?;
-    check_names("discriminator", m.discriminators.iter().map(|d| d.name.as_str()))?;
+    let (observation, frame) = (skeleton.observation_len(), skeleton.frame_len());
+    count("means in the observation normaliser", observation, t.observation_normaliser.len())?;
+    count("means in the discriminator normaliser", frame, t.discriminator_normaliser.len())?;
     let first = t.policies.first().ok_or(GraphError::NodeCount { found: 0 })?;
+    let ends = (skeleton.policy_input_len(), skeleton.joint_count());
     for (entry, mlp) in m.policies.iter().zip(&t.policies) {
-        let ends = mlp.inputs() == POLICY_INPUT_LEN && mlp.outputs() == DOF_COUNT;
-        if !ends || !mlp.same_shape(first) || widths(mlp) != entry.layers {
-            let same = widths(first);
+        let fits = (mlp.inputs(), mlp.outputs()) == ends;
+        if !fits || !mlp.same_shape(first) || widths(mlp) != entry.layers {
+            let (same, (inputs, outputs)) = (widths(first), ends);
             let expected = alloc::format!(
-                "{POLICY_INPUT_LEN} .. {DOF_COUNT}, as the manifest says and as the first policy, {same:?}"
+                "{inputs} .. {outputs}, as the manifest says and as the first policy, {same:?}"
             );
             return Err(PackError::Layers { name: entry.name.clone(), expected, found: widths(mlp) });
         }
     }
+    let inputs = frame * FRAME_AGES.len();
     for (entry, mlp) in m.discriminators.iter().zip(&t.discriminators) {
-        if mlp.inputs() != DISCRIMINATOR_INPUT_LEN || mlp.outputs() != 1 || widths(mlp) != entry.layers {
-            let expected = alloc::format!("{DISCRIMINATOR_INPUT_LEN} .. 1, as the manifest says");
+        if mlp.inputs() != inputs || mlp.outputs() != 1 || widths(mlp) != entry.layers {
+            let expected = alloc::format!("{inputs} .. 1, as the manifest says");
             return Err(PackError::Layers { name: entry.name.clone(), expected, found: widths(mlp) });
         }
     }
     Ok(())
+}
+
+/// Every skill must be reachable from every node that a path runs through.
+fn check_reachable(graph: &PolicyGraph, skills: &[Skill]) -> Result<(), PackError> {
+    for skill in skills.iter().filter(|s| !s.entry.is_empty()) {
+        let reaches =
+            |from: &&NodeId| skill.entry.iter().any(|to| graph.routes().cost(**from, *to).is_finite());
+        let mut nodes = graph.paths().iter().flat_map(|path| path.nodes());
+        if let Some(from) = nodes.find(|from| !reaches(from)) {
+            let from = graph.node(*from).name.clone();
+            return Err(PackError::Unreachable { skill: skill.name.clone(), from });
+        }
+    }
+    Ok(())
+}
+
+fn skeleton(entry: &SkeletonEntry) -> Result<Skeleton, PackError> {
+    let names = || entry.bodies.iter().map(|b| b.name.as_str());
+    let body =
+        |field: &str, name: &str| Ok::<_, PackError>(BodyId::new(find("body", field, name, &mut names())?));
+    let bodies = entry.bodies.iter().map(|b| {
+        let parent = match &b.parent {
+            None => None,
+            Some(parent) => Some(body("parent", parent)?),
+        };
+        Ok(SkeletonBody { name: b.name.clone(), parent })
+    });
+    let joints = entry.joints.iter().map(|j| {
+        let (name, axis) = (j.name.clone(), glam::Vec3::from(j.axis));
+        Ok(SkeletonJoint { name, body: body("joints", &j.body)?, axis, range: j.range })
+    });
+    let all = |names: &[String]| names.iter().map(|n| body("roles", n)).collect::<Result<Vec<_>, _>>();
+    let head = match &entry.roles.head {
+        None => None,
+        Some(name) => Some(body("roles", name)?),
+    };
+    let roles = Roles { head, hands: all(&entry.roles.hands)?, feet: all(&entry.roles.feet)? };
+    let (bodies, joints) =
+        (bodies.collect::<Result<_, PackError>>()?, joints.collect::<Result<_, PackError>>()?);
+    Ok(Skeleton::from_parts(bodies, joints, roles)?)
+}
+
+fn action_scaling(m: &Manifest, skeleton: &Skeleton) -> Result<ActionScaling, PackError> {
+    let expected = skeleton.joint_count();
+    let motors = m.actuation.as_ref().map_or(expected, |a| a.joints.len());
+    let counts = [
+        ("action_centre", m.action_centre.len()),
+        ("action_gain", m.action_gain.len()),
+        ("actuation.joints", motors),
+    ];
+    if let Some(&(what, found)) = counts.iter().find(|(_, found)| *found != expected) {
+        return Err(PackError::Count { what, expected, found });
+    }
+    if let Some((field, found)) = m.actuation.as_ref().and_then(ActuationContract::bad_number) {
+        let (owner, expected) = ("actuation".into(), "a finite number of at least 0");
+        return Err(PackError::Number { field, owner, expected, found });
+    }
+    Ok(ActionScaling::from_centre_and_gain(&m.action_centre, &m.action_gain)?)
 }
 
 /// Inputs of the first layer, then the outputs of each.
@@ -183,62 +321,60 @@ fn find<'a>(
     kind: &'static str,
     field: impl ToString,
     name: &str,
-    mut names: impl Iterator<Item = &'a str>,
+    names: &mut dyn Iterator<Item = &'a str>,
 ) -> Result<usize, PackError> {
     let unknown = || PackError::UnknownName { kind, field: field.to_string(), found: name.into() };
-    names.position(|n| n == name).ok_or_else(unknown)
+    Iterator::position(&mut &mut *names, |n| n == name).ok_or_else(unknown)
 }
 
-fn find_policy(field: String, name: &str, names: &[&str]) -> Result<usize, PackError> {
-    find("policy", field, name, names.iter().copied())
+fn find_node(field: String, name: &str, names: &[&str]) -> Result<NodeId, PackError> {
+    Ok(NodeId::new(find("policy", field, name, &mut names.iter().copied())?))
 }
 
-fn edge(entry: &EdgeEntry, names: &[&str]) -> Result<([usize; 2], f32), PackError> {
-    let end = |i: usize| find_policy("edges".into(), &entry.nodes[i], names);
-    Ok(([end(0)?, end(1)?], entry.seconds))
-}
-
-fn path(entry: &PathEntry, names: &[&str]) -> Result<Path, PackError> {
-    let field = || alloc::format!("path \"{}\"", entry.name);
-    let nodes = entry.nodes.iter().map(|n| find_policy(field(), n, names)).collect::<Result<_, _>>()?;
-    Ok(Path { name: entry.name.clone(), nodes })
+fn edge(entry: &EdgeEntry, names: &[&str]) -> Result<([NodeId; 2], [f32; 2]), PackError> {
+    let end = |i: usize| find_node("edges".into(), &entry.nodes[i], names);
+    Ok(([end(0)?, end(1)?], [entry.seconds, entry.seconds_back.unwrap_or(entry.seconds)]))
 }
 
 fn skill(entry: &SkillEntry, names: &[&str], m: &Manifest) -> Result<Skill, PackError> {
     let field = || alloc::format!("skill \"{}\"", entry.name);
-    check_end(&entry.end, field())?;
-    let discriminators = m.discriminators.iter().map(|d| d.name.as_str());
+    let mut discriminators = m.discriminators.iter().map(|d| d.name.as_str());
     Ok(Skill {
         name: entry.name.clone(),
-        policy: find_policy(field(), &entry.policy, names)?,
-        entry: entry.entry.iter().map(|n| find_policy(field(), n, names)).collect::<Result<_, _>>()?,
-        returns_to: find_policy(field(), &entry.returns_to, names)?,
+        policy: PolicyId::from(find_node(field(), &entry.policy, names)?),
+        entry: entry.entry.iter().map(|n| find_node(field(), n, names)).collect::<Result<_, _>>()?,
+        returns_to: find_node(field(), &entry.returns_to, names)?,
         discriminator: match &entry.discriminator {
             None => None,
-            Some(name) => Some(find("discriminator", field(), name, discriminators)?),
+            Some(name) => {
+                Some(DiscriminatorId::new(find("discriminator", field(), name, &mut discriminators)?))
+            }
         },
-        end: entry.end,
+        end: end_condition(&entry.end, field())?,
     })
 }
 
-fn check_end(end: &EndCondition, owner: String) -> Result<(), PackError> {
+fn end_condition(end: &EndEntry, owner: String) -> Result<EndCondition, PackError> {
     let checks = [
         ("threshold", end.threshold, 1.0, "0 to 1"),
         ("hysteresis", end.hysteresis, end.threshold, "0 to the threshold"),
+        ("hold_seconds", end.hold_seconds, end.limit_seconds, "above 0, up to the limit"),
         ("minimum_seconds", end.minimum_seconds, end.limit_seconds, "0 to the limit"),
         ("limit_seconds", end.limit_seconds, 600.0, "0 to 600"),
-        ("ticks", end.ticks as f32, 1e4, "1 to 10000"),
         ("minimum_height", end.minimum_height, 10.0, "0 to 10"),
     ];
     for (field, found, most, expected) in checks {
-        let least = if field == "ticks" { 1.0 } else { 0.0 };
+        let least = if field == "hold_seconds" { f32::MIN_POSITIVE } else { 0.0 };
         if !(least..=most).contains(&found) {
             return Err(PackError::Number { field, owner, expected, found });
         }
     }
-    Ok(())
-}
-
-fn joint_numbers(what: &'static str, numbers: &[f32]) -> Result<[f32; DOF_COUNT], PackError> {
-    numbers.try_into().map_err(|_| PackError::Count { what, expected: DOF_COUNT, found: numbers.len() })
+    Ok(EndCondition {
+        threshold: end.threshold,
+        hysteresis: end.hysteresis,
+        hold_seconds: end.hold_seconds,
+        minimum_seconds: end.minimum_seconds,
+        limit_seconds: end.limit_seconds,
+        minimum_height: end.minimum_height,
+    })
 }
