@@ -92,7 +92,7 @@ impl ControllerState {
         assert!(self.same_size(other), "states of one skeleton");
         self.report = other.report;
         self.fall = other.fall;
-        self.history.clone_from(&other.history);
+        self.history.copy_from(&other.history);
         self.rest = other.rest;
         self.interrupted = other.interrupted;
         self.targets.copy_from_slice(&other.targets);

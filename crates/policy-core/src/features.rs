@@ -69,6 +69,12 @@ impl FrameHistory {
         Self { frames: alloc::vec![0.0; HISTORY_LEN * frame_len], frame_len, newest: 0, seen: 0 }
     }
 
+    /// Copies a history of the same size without allocating.
+    pub(crate) fn copy_from(&mut self, other: &Self) {
+        self.frames.copy_from_slice(&other.frames);
+        (self.newest, self.seen) = (other.newest, other.seen);
+    }
+
     /// Numbers of all frames of a history.
     pub(crate) fn new_len(frame_len: usize) -> usize {
         HISTORY_LEN * frame_len

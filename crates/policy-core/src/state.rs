@@ -110,7 +110,9 @@ impl CharacterState {
 
     /// Copies the numbers of `other`. Allocates only when the sizes differ.
     pub fn copy_from(&mut self, other: &Self) {
-        self.clone_from(other);
+        self.bodies.clone_from(&other.bodies);
+        self.joint_velocities.clone_from(&other.joint_velocities);
+        self.ground_height = other.ground_height;
     }
 
     /// True when every number is finite.
