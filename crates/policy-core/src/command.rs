@@ -3,8 +3,9 @@
 use glam::Vec2;
 
 use crate::blend::Blend;
-use crate::graph::{GraphPosition, PolicyGraph};
+use crate::graph::PolicyGraph;
 use crate::ids::{NodeId, PathId, SkillId};
+use crate::path::GraphPosition;
 
 /// Where on the graph to go.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]

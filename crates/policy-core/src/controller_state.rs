@@ -8,9 +8,9 @@ use alloc::vec::Vec;
 use crate::evaluator::BlendRest;
 use crate::fall::FallDetector;
 use crate::features::FrameHistory;
-use crate::graph::GraphPosition;
 use crate::ids::SkillId;
 use crate::pack::CharacterPack;
+use crate::path::GraphPosition;
 use crate::report::TickReport;
 use crate::state::JointTargets;
 

@@ -3,7 +3,8 @@
 //! A character has fallen when its root stays lower than the policies in use allow. Leaving a low gait requires
 //! standing first.
 
-use crate::graph::{GraphPosition, PolicyGraph};
+use crate::graph::PolicyGraph;
+use crate::path::GraphPosition;
 use crate::skeleton::Skeleton;
 use crate::state::CharacterState;
 

@@ -13,8 +13,9 @@ use crate::format::{Manifest, PACK_VERSION, Storage};
 use crate::format_one::{self, ManifestOne};
 use crate::mlp::{Layer, MAX_LAYERS, Mlp};
 use crate::normaliser::Normaliser;
-use crate::pack::{CharacterPack, PackTensors, check_manifest};
+use crate::pack::{CharacterPack, PackTensors};
 use crate::pack_error::PackError;
+use crate::pack_parts::check_manifest;
 
 /// Key of the manifest in the file's metadata.
 pub(crate) const MANIFEST_KEY: &str = "policy_space";

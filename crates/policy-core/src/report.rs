@@ -2,9 +2,9 @@
 
 use crate::blend::Blend;
 use crate::evaluator::Evaluation;
-use crate::graph::GraphPosition;
 use crate::ids::{NodeId, PolicyId, SkillId};
 use crate::observation::TARGET_LEN;
+use crate::path::GraphPosition;
 use crate::skill::{Refusal, SkillEnd, SkillProgress};
 
 /// Why a state can't be acted on.

@@ -4,8 +4,9 @@
 
 use alloc::vec::Vec;
 
-use crate::graph::{Edge, GraphPosition, PolicyGraph};
+use crate::graph::{Edge, PolicyGraph};
 use crate::ids::NodeId;
+use crate::path::GraphPosition;
 
 /// Cheapest ways between all nodes; the cost of an edge is the distance between its policies' parameters.
 #[derive(Clone, Debug)]

@@ -6,10 +6,10 @@
 use crate::blend::{Blend, BlendTerm, MAX_BLEND_TERMS};
 use crate::controller_state::{ControllerState, StateError};
 use crate::evaluator::Evaluation;
-use crate::graph::GraphPosition;
 use crate::ids::{NodeId, PolicyId, SkillId};
 use crate::mlp::MAX_LAYERS;
 use crate::pack::CharacterPack;
+use crate::path::GraphPosition;
 use crate::report::{StateFault, TickReport};
 use crate::skill::{Refusal, SkillEnd, SkillProgress};
 

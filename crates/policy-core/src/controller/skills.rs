@@ -5,8 +5,8 @@ use alloc::sync::Arc;
 use super::Controller;
 use crate::controller_state::ControllerState;
 use crate::fall::{Heights, fall_height};
-use crate::graph::GraphPosition;
 use crate::ids::SkillId;
+use crate::path::GraphPosition;
 use crate::skill::{Refusal, SkillEnd, SkillProgress};
 use crate::state::CharacterState;
 

@@ -4,9 +4,10 @@ use alloc::sync::Arc;
 
 use super::Controller;
 use crate::controller_state::ControllerState;
-use crate::graph::{GraphPosition, PolicyGraph};
+use crate::graph::PolicyGraph;
 use crate::ids::{NodeId, SkillId};
 use crate::pack::CharacterPack;
+use crate::path::GraphPosition;
 use crate::report::TickReport;
 
 /// Why a pack can't take the place of another.
