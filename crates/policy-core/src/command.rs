@@ -13,7 +13,7 @@ pub enum Goal {
     /// Stay at the present position.
     #[default]
     Stay,
-    /// A coordinate on a path; see [`Path::position`](crate::Path::position).
+    /// A coordinate on a path; see [`Path::position`](crate::training::Path::position).
     Path {
         /// The path. One that is not there means [`Goal::Stay`].
         path: PathId,

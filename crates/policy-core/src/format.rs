@@ -163,10 +163,10 @@ pub struct PolicyEntry {
     pub name: String,
     /// Widths: inputs, hidden layers, outputs.
     pub layers: Vec<usize>,
-    /// See [`Node::fall_height`](crate::Node::fall_height).
+    /// See [`Node::fall_height`](crate::training::Node::fall_height).
     #[serde(default)]
     pub fall_height: Option<f32>,
-    /// See [`Node::speed_mps`](crate::Node::speed_mps).
+    /// See [`Node::speed_mps`](crate::training::Node::speed_mps).
     #[serde(default)]
     pub speed_mps: Option<f32>,
     /// Where the policy comes from: recipe, samples, seed.
@@ -230,7 +230,7 @@ pub struct SkillEntry {
     pub end: EndEntry,
 }
 
-/// See [`EndCondition`](crate::EndCondition).
+/// See [`EndCondition`](crate::training::EndCondition).
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct EndEntry {

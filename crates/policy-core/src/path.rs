@@ -6,7 +6,7 @@ use alloc::vec::Vec;
 use crate::blend::Blend;
 use crate::ids::{NodeId, PolicyId};
 
-/// An ordered list of at least two nodes, each joined to the next by an edge. Made by [`PolicyGraph::from_parts`].
+/// An ordered list of at least two nodes, each joined to the next by an edge. Made by [`PolicyGraph::from_parts`](crate::PolicyGraph::from_parts).
 #[derive(Clone, Debug, PartialEq)]
 pub struct Path {
     pub(crate) name: String,
