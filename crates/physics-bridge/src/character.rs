@@ -4,13 +4,14 @@ use std::sync::Arc;
 
 use mujoco_rs::wrappers::mj_data::MjData;
 use mujoco_rs::wrappers::mj_model::MjModel;
-use policy_core::Heading;
+use policy_core::{Body, Heading};
 
 use crate::contact::{self, Contact, MOST_CONTACTS};
-use crate::diverged::{Diverged, Warning};
+use crate::diverged::{Cause, Diverged, Excess};
 use crate::dump::Dump;
 use crate::history::History;
 use crate::model::Model;
+use crate::plausibility::Fault;
 use crate::push::Pushes;
 use crate::snapshot::Snapshot;
 
@@ -82,13 +83,14 @@ impl Character {
     /// Runs one control tick of physics.
     ///
     /// # Errors
-    /// When the motion is no longer finite, or MuJoCo warns of anything else. The character is then back in
-    /// its state before the tick, and the error carries that state, to be saved and replayed.
+    /// When MuJoCo warns of anything, or a body ends the tick beyond a limit of plausible motion
+    /// ([`MAX_SPEED_MPS`](crate::MAX_SPEED_MPS) and the others). The character is then back in its state before
+    /// the tick, and the error carries that state, to be saved and replayed.
     pub fn step(&mut self) -> Result<(), Diverged> {
         self.before.record(&self.data, self.tick, &self.pushes);
         let substeps = self.model.substeps();
         for substep in 0..substeps {
-            self.pushes.apply(&mut self.data, &self.model.layout().body_ids);
+            self.pushes.apply(&mut self.data, self.model.layout());
             // The two halves of `mj_step`, turned round, so that everything derived from the state is up to
             // date when the tick ends.
             self.data.step2();
@@ -97,8 +99,14 @@ impl Character {
             }
             self.data.step1();
             if let Some(index) = self.data.warning().iter().position(|w| w.number > 0) {
-                return Err(self.diverge(substep, index));
+                let cause = Cause::WARNINGS[index];
+                let place = usize::try_from(self.data.warning()[index].lastinfo).ok();
+                let body = place.and_then(|place| self.model.layout().body_of(cause, place));
+                return Err(self.diverge(substep, cause, body, None));
             }
+        }
+        if let Some(Fault { cause, body, excess }) = self.fault() {
+            return Err(self.diverge(substeps - 1, cause, Some(body), Some(excess)));
         }
         self.tick += 1;
         if let Some(history) = &mut self.history {
@@ -113,14 +121,17 @@ impl Character {
         self.contacts.clear();
     }
 
-    /// Reads the warning and returns to the state before the tick.
-    fn diverge(&mut self, substep: u32, index: usize) -> Diverged {
-        let warning = Warning::ALL[index];
-        let place = usize::try_from(self.data.warning()[index].lastinfo).ok();
-        let body = place.and_then(|place| self.model.layout().body_of(warning, place));
+    /// Returns to the state before the tick.
+    fn diverge(
+        &mut self,
+        substep: u32,
+        cause: Cause,
+        body: Option<Body>,
+        excess: Option<Excess>,
+    ) -> Diverged {
         let before = self.before.clone();
         self.take_up(&before);
         let dump = Box::new(Dump::new(&self.model, before));
-        Diverged { tick: self.tick, substep, warning, body, dump }
+        Diverged { tick: self.tick, substep, cause, body, excess, dump }
     }
 }

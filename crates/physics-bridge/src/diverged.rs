@@ -1,14 +1,15 @@
-//! What is known of a step that blew up.
+//! Why a step was undone.
 
 use mujoco_rs::wrappers::mj_data::MjtWarning;
 use policy_core::Body;
 
 use crate::dump::Dump;
 
-/// Which of MuJoCo's watches went off.
+/// What was wrong with the motion after a step. The first seven are MuJoCo's own checks, after each substep;
+/// the others are checked at the end of each control tick.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[non_exhaustive]
-pub enum Warning {
+pub enum Cause {
     /// The inertia matrix is close to singular.
     SingularInertia,
     /// More contacts than the memory holds.
@@ -23,52 +24,96 @@ pub enum Warning {
     BadAcceleration,
     /// NaN, infinity or a huge value in the joint targets.
     BadControl,
+    /// A body spins faster than [`MAX_SPIN_RADPS`](crate::MAX_SPIN_RADPS).
+    SpinsTooFast,
+    /// A body is faster than [`MAX_SPEED_MPS`](crate::MAX_SPEED_MPS).
+    TooFast,
+    /// The origin of a body is deeper in the ground than [`MAX_DEPTH_M`](crate::MAX_DEPTH_M).
+    BelowGround,
+    /// A body is further from the origin of the world than [`MAX_DISTANCE_M`](crate::MAX_DISTANCE_M).
+    TooFarAway,
 }
 
-impl Warning {
-    /// All warnings in the order of MuJoCo's counters.
-    pub(crate) const ALL: [Warning; MjtWarning::mjNWARNING as usize] = [
-        Warning::SingularInertia,
-        Warning::ContactsFull,
-        Warning::ConstraintsFull,
-        Warning::BadPosition,
-        Warning::BadVelocity,
-        Warning::BadAcceleration,
-        Warning::BadControl,
+impl Cause {
+    /// MuJoCo's checks in the order of its warning counters.
+    pub(crate) const WARNINGS: [Cause; MjtWarning::mjNWARNING as usize] = [
+        Cause::SingularInertia,
+        Cause::ContactsFull,
+        Cause::ConstraintsFull,
+        Cause::BadPosition,
+        Cause::BadVelocity,
+        Cause::BadAcceleration,
+        Cause::BadControl,
     ];
+
+    /// Unit of the value and the limit; empty where there is none.
+    fn unit(self) -> &'static str {
+        match self {
+            Cause::TooFast => " m/s",
+            Cause::SpinsTooFast => " rad/s",
+            Cause::BelowGround | Cause::TooFarAway => " m",
+            _ => "",
+        }
+    }
 }
 
-impl std::fmt::Display for Warning {
+impl std::fmt::Display for Cause {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         f.write_str(match self {
-            Warning::SingularInertia => "a singular inertia matrix",
-            Warning::ContactsFull => "more contacts than the memory holds",
-            Warning::ConstraintsFull => "more constraints than the memory holds",
-            Warning::BadPosition => "a position that is not finite or huge",
-            Warning::BadVelocity => "a velocity that is not finite or huge",
-            Warning::BadAcceleration => "an acceleration that is not finite or huge",
-            Warning::BadControl => "a joint target that is not finite or huge",
+            Cause::SingularInertia => "a singular inertia matrix",
+            Cause::ContactsFull => "more contacts than the memory holds",
+            Cause::ConstraintsFull => "more constraints than the memory holds",
+            Cause::BadPosition => "a position that is not finite or huge",
+            Cause::BadVelocity => "a velocity that is not finite or huge",
+            Cause::BadAcceleration => "an acceleration that is not finite or huge",
+            Cause::BadControl => "a joint target that is not finite or huge",
+            Cause::TooFast => "a body that is too fast",
+            Cause::SpinsTooFast => "a body that spins too fast",
+            Cause::BelowGround => "a body below the ground",
+            Cause::TooFarAway => "a body too far from the origin",
         })
     }
 }
 
-/// The simulation of a character blew up. The character is back in its state before the tick.
+/// What was measured, and how much of it is plausible.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
+pub struct Excess {
+    /// What was found, in the unit that the cause names.
+    pub value: f32,
+    /// The largest plausible value.
+    pub limit: f32,
+}
+
+/// The simulation of a character diverged. The character is back in its state before the tick.
 #[derive(Debug, thiserror::Error)]
-#[error("simulation diverged in tick {tick}, substep {substep}: expected finite motion, found {warning}{}", at(*body))]
+#[error(
+    "simulation diverged in tick {tick}, substep {substep}: expected plausible motion, found {cause}{}",
+    self.details()
+)]
 #[non_exhaustive]
 pub struct Diverged {
     /// Control ticks that the character had completed.
     pub tick: u64,
-    /// Substep of the tick in which it happened, from 0.
+    /// Substep of the tick in which it was found, from 0.
     pub substep: u32,
-    /// The watch that went off first.
-    pub warning: Warning,
-    /// The first body it named; `None` when it names none.
+    /// What was wrong.
+    pub cause: Cause,
+    /// The first body with that fault; `None` when it belongs to no body.
     pub body: Option<Body>,
+    /// Value and limit; `None` for MuJoCo's own checks, which do not tell the value.
+    pub excess: Option<Excess>,
     /// The state before the tick, to be saved and replayed.
     pub dump: Box<Dump>,
 }
 
-fn at(body: Option<Body>) -> String {
-    body.map_or_else(String::new, |body| format!(" in body {}", body.name()))
+impl Diverged {
+    fn details(&self) -> String {
+        let body = self.body.map_or_else(String::new, |body| format!(", body {}", body.name()));
+        let unit = self.cause.unit();
+        let excess = self.excess.map_or_else(String::new, |Excess { value, limit }| {
+            format!(", {value}{unit} where at most {limit}{unit} is plausible")
+        });
+        body + &excess
+    }
 }

@@ -4,7 +4,7 @@
 use mujoco_rs::wrappers::mj_model::{MjModel, MjtBias, MjtGain, MjtJoint, MjtObjBase, MjtTrn};
 use policy_core::{BODY_COUNT, BODY_NAMES, Body, DOF_COUNT, JOINT_NAMES};
 
-use crate::diverged::Warning;
+use crate::diverged::Cause;
 use crate::model_error::ModelError;
 use crate::{QPOS_LEN, QVEL_LEN};
 
@@ -105,17 +105,17 @@ impl Layout {
     }
 
     /// The body that a number named by a warning of MuJoCo belongs to.
-    pub(crate) fn body_of(&self, warning: Warning, index: usize) -> Option<Body> {
+    pub(crate) fn body_of(&self, warning: Cause, index: usize) -> Option<Body> {
         match warning {
-            Warning::BadPosition => self.qpos_body.get(index).copied(),
-            Warning::BadVelocity | Warning::BadAcceleration | Warning::SingularInertia => {
+            Cause::BadPosition => self.qpos_body.get(index).copied(),
+            Cause::BadVelocity | Cause::BadAcceleration | Cause::SingularInertia => {
                 self.dof_body.get(index).copied()
             }
-            Warning::BadControl => {
+            Cause::BadControl => {
                 let joint = self.joint_ctrl.iter().position(|&ctrl| ctrl == index)?;
                 self.dof_body.get(self.joint_dof[joint]).copied()
             }
-            Warning::ContactsFull | Warning::ConstraintsFull => None,
+            _ => None,
         }
     }
 }

@@ -1,6 +1,9 @@
 //! Compiles MJCF text, with a height field put in where the terrain asks for one, and says in full what is
 //! wrong with it.
 
+mod limits;
+mod xml;
+
 use std::ffi::{CStr, c_char};
 
 use mujoco_rs::mujoco_c::{mj_deleteModel, mj_loadXML};
@@ -23,8 +26,9 @@ const MESSAGE_BYTES: usize = 1024;
 
 const FILE_NAME: &CStr = c"model.xml";
 
-/// Compiles `mjcf` on `terrain`.
+/// Compiles `mjcf` on `terrain`. Text that asks for files or for too much never reaches MuJoCo.
 pub(crate) fn compile(mjcf: &str, terrain: &Terrain) -> Result<MjModel, ModelError> {
+    limits::check(mjcf)?;
     logging::install();
     terrain.check()?;
     let Some(grid) = terrain.grid() else {

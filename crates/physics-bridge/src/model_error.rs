@@ -37,6 +37,45 @@ pub enum ModelError {
         /// MuJoCo's words, on one line, with the element and the line in the XML.
         message: String,
     },
+    /// The text is too long to be a character.
+    #[error("expected an MJCF of at most {most} bytes, found {found}")]
+    Length {
+        /// Most bytes.
+        most: usize,
+        /// Bytes found.
+        found: usize,
+    },
+    /// The text is malformed.
+    #[error("line {line}: expected {expected}, found something else")]
+    Xml {
+        /// Line in the text, from 1.
+        line: usize,
+        /// What should be there.
+        expected: &'static str,
+    },
+    /// The text holds what a character has no use for: something that reads files, loads plug-ins or runs a
+    /// simulation while it is compiled.
+    #[error("line {line}: expected an MJCF that stands alone, found {what}")]
+    Forbidden {
+        /// Line in the text, from 1.
+        line: usize,
+        /// Name of the element or attribute.
+        what: String,
+    },
+    /// A size, count or number of rounds is too large.
+    #[error("line {line}: expected {what} of element {element} to be at most {most}, found {found}")]
+    Limit {
+        /// Line in the text, from 1.
+        line: usize,
+        /// Name of the element.
+        element: String,
+        /// Name of the attribute, or what is counted.
+        what: String,
+        /// Most.
+        most: f64,
+        /// Found; not a number where the text has none.
+        found: f64,
+    },
     /// A named part of the humanoid does not exist.
     #[error("expected a {kind} named {name}, found none")]
     Missing {

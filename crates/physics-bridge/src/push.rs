@@ -1,6 +1,6 @@
 //! Pushes from outside: a force on a body for a while, or an impulse.
 
-use glam::Vec3;
+use glam::{DVec3, Vec3};
 use mujoco_rs::wrappers::mj_data::MjData;
 use mujoco_rs::wrappers::mj_model::MjModel;
 use policy_core::{BODY_COUNT, Body};
@@ -8,6 +8,8 @@ use serde::{Deserialize, Serialize};
 use std::sync::Arc;
 
 use crate::character::Character;
+use crate::layout::Layout;
+use crate::sense::velocity_at;
 
 /// Why a push is refused.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
@@ -28,6 +30,9 @@ pub enum PushError {
 /// Largest force, newtons, and largest impulse, newton seconds.
 const MOST_FORCE: f32 = 1e6;
 
+/// Speed to which pushes drive a body, metres per second.
+pub const MAX_PUSHED_MPS: f32 = 20.0;
+
 /// Longest push, seconds.
 const MOST_SECS: f32 = 3600.0;
 
@@ -46,24 +51,26 @@ pub(crate) struct Pushes {
 }
 
 impl Pushes {
-    /// Writes the forces of the substep that comes next.
-    pub(crate) fn apply(&mut self, data: &mut MjData<Arc<MjModel>>, body_ids: &[usize; BODY_COUNT]) {
+    /// Writes the forces of the substep that comes next. Velocities in `data` must be up to date.
+    pub(crate) fn apply(&mut self, data: &mut MjData<Arc<MjModel>>, layout: &Layout) {
         if !self.under_way {
             return;
         }
         self.under_way = false;
         let timestep = data.model_opt().timestep;
-        let applied = data.xfrc_applied_mut();
-        for (index, &id) in body_ids.iter().enumerate() {
+        for (index, &id) in layout.body_ids.iter().enumerate() {
             let mut force = Vec3::from(self.impulses[index]).as_dvec3() / timestep;
             if self.substeps_left[index] > 0 {
                 self.substeps_left[index] -= 1;
                 force += Vec3::from(self.forces[index]).as_dvec3();
             }
             self.impulses[index] = [0.0; 3];
-            applied[id][..3].copy_from_slice(&force.to_array());
             // One more substep after the last one, to write zeros.
             self.under_way |= force.length_squared() > 0.0 || self.substeps_left[index] > 0;
+            if outruns(data, layout, id, force) {
+                force = DVec3::ZERO;
+            }
+            data.xfrc_applied_mut()[id][..3].copy_from_slice(&force.to_array());
         }
     }
 
@@ -76,7 +83,10 @@ impl Pushes {
 
 impl Character {
     /// Pushes `body` at its centre of mass with `force` newtons, world axes, for `secs` from now, rounded to
-    /// whole substeps. Takes the place of the push that the body is still under; ends when it is posed.
+    /// whole substeps. Replaces the push that still acts on the body. Posing the character ends it.
+    ///
+    /// While the body already moves along the force at [`MAX_PUSHED_MPS`], the force is zero, so pushes that
+    /// are repeated do not add up without bound.
     ///
     /// # Errors
     /// When a number is not finite, the force is over 1 MN, or the duration negative or over an hour.
@@ -90,8 +100,16 @@ impl Character {
         Ok(())
     }
 
+    /// True while a push acts on `body`, or an impulse waits for the next substep.
+    #[must_use]
+    pub fn is_pushed(&self, body: Body) -> bool {
+        let index = body.index();
+        self.pushes.substeps_left[index] > 0 || self.pushes.impulses[index] != [0.0; 3]
+    }
+
     /// Hits `body` at its centre of mass with `impulse` newton seconds, world axes, during the next substep.
-    /// Several impulses before it add up.
+    /// Several impulses before it add up. An impulse on a body that already moves along it at
+    /// [`MAX_PUSHED_MPS`] has no effect.
     ///
     /// # Errors
     /// When the impulse is not finite or over 1 MN s.
@@ -102,6 +120,13 @@ impl Character {
         self.pushes.under_way = true;
         Ok(())
     }
+}
+
+/// True when the centre of mass of a body moves along `force` faster than a push can drive it.
+fn outruns(data: &MjData<Arc<MjModel>>, layout: &Layout, id: usize, force: DVec3) -> bool {
+    let reference = DVec3::from(data.subtree_com()[layout.body_ids[0]]);
+    let (_, velocity) = velocity_at(data.cvel()[id], DVec3::from(data.xipos()[id]) - reference);
+    velocity.dot(force) > f64::from(MAX_PUSHED_MPS) * force.length()
 }
 
 fn at_most(what: &'static str, found: f32, most: f32) -> Result<(), PushError> {

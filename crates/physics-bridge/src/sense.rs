@@ -65,6 +65,14 @@ impl Character {
         (momentum / mass).as_vec3()
     }
 
+    /// Speed of a body's frame, metres per second, world space.
+    #[must_use]
+    pub fn speed_of(&self, body: Body) -> f32 {
+        let id = self.model.layout().body_ids[body.index()];
+        let offset = DVec3::from(self.data.xpos()[id]) - self.velocity_reference();
+        velocity_at(self.data.cvel()[id], offset).1.length() as f32
+    }
+
     /// Where the character touched during the last substep, at most 64 points. Empty until the first step
     /// after it was posed or restored.
     #[must_use]
@@ -102,13 +110,13 @@ impl Character {
 
     /// The point that MuJoCo's body velocities are of: it moves with the body, and is now where the centre
     /// of mass of the whole character is.
-    fn velocity_reference(&self) -> DVec3 {
+    pub(crate) fn velocity_reference(&self) -> DVec3 {
         DVec3::from(self.data.subtree_com()[self.model.layout().body_ids[Body::Pelvis.index()]])
     }
 }
 
 /// Angular velocity, and linear velocity `offset` away from the reference point.
-fn velocity_at([wx, wy, wz, vx, vy, vz]: [f64; 6], offset: DVec3) -> (DVec3, DVec3) {
+pub(crate) fn velocity_at([wx, wy, wz, vx, vy, vz]: [f64; 6], offset: DVec3) -> (DVec3, DVec3) {
     let angular = DVec3::new(wx, wy, wz);
     (angular, DVec3::new(vx, vy, vz) + angular.cross(offset))
 }
