@@ -1,14 +1,12 @@
 //! The last seconds of a character, to step back through.
 
-use crate::CONTROL_HZ;
-use crate::character::Character;
-use crate::model::Model;
-use crate::snapshot::Snapshot;
+use super::{Character, Snapshot};
+use crate::description::model::Model;
 
 /// How long a history usually is, seconds.
 pub const HISTORY_SECS: f32 = 10.0;
 
-/// Longest history, seconds: about 250 MB.
+/// Longest history, seconds: about 250 MB for the humanoid.
 const MOST_SECS: f32 = 3600.0;
 
 /// No such state is recorded.
@@ -24,7 +22,7 @@ pub struct NotRecorded {
 
 /// A ring of snapshots, all allocated at the start.
 #[derive(Debug)]
-pub(crate) struct History {
+pub(super) struct History {
     slots: Box<[Snapshot]>,
     /// Slot of the newest state.
     newest: usize,
@@ -36,13 +34,13 @@ pub(crate) struct History {
 
 impl History {
     fn new(model: &Model, secs: f32) -> Self {
-        let ticks = (secs.clamp(0.0, MOST_SECS) * CONTROL_HZ as f32).round() as usize;
+        let ticks = (secs.clamp(0.0, MOST_SECS) * model.control_hz()).round() as usize;
         let slots = vec![Snapshot::for_model(model); ticks + 1].into_boxed_slice();
         Self { slots, newest: 0, len: 0, age: 0 }
     }
 
     /// The slot for the state that follows the present one; what came after that is forgotten.
-    pub(crate) fn next_slot(&mut self) -> &mut Snapshot {
+    pub(super) fn next_slot(&mut self) -> &mut Snapshot {
         let capacity = self.slots.len();
         self.newest = (self.newest + capacity - self.age + 1) % capacity;
         self.len = (self.len - self.age + 1).min(capacity);
@@ -56,8 +54,8 @@ impl History {
 }
 
 impl Character {
-    /// From now on keeps the state at every control tick for `secs` (usually [`HISTORY_SECS`]), in memory
-    /// that is allocated here: 2.5 kB a tick. A history recorded before is forgotten.
+    /// Keeps the states of the last `secs` seconds from now on, usually [`HISTORY_SECS`]. Allocates them here: about
+    /// 2.5 kB a tick for the humanoid. Forgets a history that was recorded before.
     pub fn record_history(&mut self, secs: f32) {
         self.history = Some(Box::new(History::new(&self.model, secs)));
         self.restart_history();
@@ -69,15 +67,15 @@ impl Character {
         self.history.as_ref().map_or(0, |history| history.len)
     }
 
-    /// How many ticks before the newest recorded state the character is: 0 unless it was taken back.
+    /// How many ticks before the newest recorded state the character is: 0 unless it was rewound.
     #[must_use]
     pub fn history_age(&self) -> usize {
         self.history.as_ref().map_or(0, |history| history.age)
     }
 
     /// Goes to the state `age` ticks before the newest recorded one: 0 is the newest, `history_len() - 1` the
-    /// oldest. Newer states stay to be gone back to until the next [`Character::step`], which goes on from
-    /// here, bit for bit as it did the first time if it gets the same targets.
+    /// oldest. Newer states stay recorded until the next [`Character::step`]. That step repeats the first one bit
+    /// for bit if it gets the same targets.
     ///
     /// # Errors
     /// When that many are not recorded; the character is then unchanged.
@@ -86,7 +84,7 @@ impl Character {
         let Some(mut history) = self.history.take() else {
             return Err(NotRecorded { asked: age, recorded });
         };
-        let found = history.at_age(age).map(|snapshot| self.take_up(snapshot));
+        let found = history.at_age(age).map(|snapshot| self.load_state(snapshot));
         if found.is_some() {
             history.age = age;
         }
@@ -95,7 +93,7 @@ impl Character {
     }
 
     /// Forgets the recorded states and records the present one, if a history is recorded at all.
-    pub(crate) fn restart_history(&mut self) {
+    pub(super) fn restart_history(&mut self) {
         if let Some(history) = &mut self.history {
             (history.len, history.age) = (0, 0);
             history.next_slot().record(&self.data, self.tick, &self.pushes);

@@ -2,11 +2,10 @@
 //! that are not finite or above 1e10; a simulation has diverged long before that.
 
 use glam::DVec3;
-use policy_core::Body;
+use policy_core::BodyId;
 
-use crate::character::Character;
-use crate::diverged::{Cause, Excess};
-use crate::sense::velocity_at;
+use super::sense::{velocity_at, velocity_reference};
+use super::{Cause, Character, Excess};
 
 /// Largest plausible speed of a body, metres per second.
 pub const MAX_SPEED_MPS: f32 = 50.0;
@@ -24,20 +23,20 @@ pub const MAX_DEPTH_M: f32 = 0.5;
 pub const MAX_DISTANCE_M: f32 = 10_000.0;
 
 /// A body that does what no body can.
-pub(crate) struct Fault {
+pub(super) struct Fault {
     pub cause: Cause,
-    pub body: Body,
+    pub body: BodyId,
     pub excess: Excess,
 }
 
 impl Character {
     /// The first body with a fault, and its first fault in the order of [`Cause`]. Everything derived from the
     /// state must be up to date.
-    pub(crate) fn fault(&self) -> Option<Fault> {
+    pub(super) fn fault(&self) -> Option<Fault> {
         let (xpos, cvel) = (self.data.xpos(), self.data.cvel());
-        let reference = self.velocity_reference();
-        let mut bodies = self.model.layout().body_ids.iter().zip(Body::ALL);
-        bodies.find_map(|(&id, body)| {
+        let layout = self.model.layout();
+        let reference = velocity_reference(&self.data, layout);
+        layout.body_ids.iter().enumerate().find_map(|(index, &id)| {
             let position = DVec3::from(xpos[id]);
             let (angular, linear) = velocity_at(cvel[id], position - reference);
             let ground = self.model.height_at(position.x as f32, position.y as f32);
@@ -49,6 +48,7 @@ impl Character {
             ];
             // MuJoCo has checked that the numbers are finite.
             let (cause, value, limit) = checks.into_iter().find(|&(_, value, limit)| value > limit.into())?;
+            let body = BodyId::new(index);
             Some(Fault { cause, body, excess: Excess { value: value as f32, limit } })
         })
     }

@@ -3,21 +3,23 @@
 use glam::{DVec3, Vec3};
 use mujoco_rs::wrappers::mj_data::MjData;
 use mujoco_rs::wrappers::mj_model::MjModel;
-use policy_core::Body;
+use policy_core::{BodyId, Skeleton};
 use std::sync::Arc;
 
-use crate::layout::Layout;
+use crate::description::layout::Layout;
 
-/// Contacts kept of a tick; a body lying on a fine terrain can have more.
-pub(crate) const MOST_CONTACTS: usize = 64;
+/// Contacts kept of a tick. A body that lies on a fine terrain can have more.
+pub(super) fn most_contacts(skeleton: &Skeleton) -> usize {
+    (4 * skeleton.body_count()).max(64)
+}
 
 /// A point at which a body touches the ground or another body. World space.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Contact {
     /// The body that is touched.
-    pub body: Body,
+    pub body: BodyId,
     /// The other body; `None` for the ground.
-    pub other: Option<Body>,
+    pub other: Option<BodyId>,
     /// Where, metres.
     pub position: Vec3,
     /// Away from the ground or the other body, a unit vector.
@@ -29,7 +31,7 @@ pub struct Contact {
 }
 
 /// Replaces `contacts` with those of the substep that was just solved, as many as it has room for.
-pub(crate) fn collect(data: &MjData<Arc<MjModel>>, layout: &Layout, contacts: &mut Vec<Contact>) {
+pub(super) fn collect(data: &MjData<Arc<MjModel>>, layout: &Layout, contacts: &mut Vec<Contact>) {
     contacts.clear();
     let model = data.model();
     let bodies = model.geom_bodyid();

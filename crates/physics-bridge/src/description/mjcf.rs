@@ -11,9 +11,9 @@ use mujoco_rs::wrappers::mj_auxiliary::MjVfs;
 use mujoco_rs::wrappers::mj_editing::{MjSpec, SpecItem};
 use mujoco_rs::wrappers::mj_model::{MjModel, MjtGeomBase};
 
-use crate::logging;
-use crate::model_error::ModelError;
-use crate::terrain::{Grid, HALF_EXTENT, PLANE_DROP, Terrain};
+use super::logging;
+use super::model_error::ModelError;
+use super::terrain::{Grid, HALF_EXTENT, PLANE_DROP, Terrain};
 
 /// Name of the plane that every MJCF must have.
 pub(crate) const FLOOR: &str = "floor";
@@ -42,7 +42,11 @@ pub(crate) fn compile(mjcf: &str, terrain: &Terrain) -> Result<MjModel, ModelErr
 /// Puts a height field with the floor's contact properties into the world, and the floor below it.
 fn add_height_field(spec: &mut MjSpec, grid: &Grid) -> Result<(), ModelError> {
     if spec.hfield(HEIGHT_FIELD).is_some() || spec.geom(HEIGHT_FIELD).is_some() {
-        return Err(ModelError::Kind { kind: "geom", name: HEIGHT_FIELD, expected: "a name that is free" });
+        return Err(ModelError::Kind {
+            kind: "geom",
+            name: HEIGHT_FIELD.into(),
+            expected: "a name that is free",
+        });
     }
     let side = i32::try_from(grid.side).expect("a grid of a few hundred points");
     let highest = f64::from(grid.highest).max(1e-3);
@@ -51,7 +55,8 @@ fn add_height_field(spec: &mut MjSpec, grid: &Grid) -> Result<(), ModelError> {
     field.set_ncol(side);
     field.set_userdata(&grid.heights);
 
-    let floor = spec.geom_mut(FLOOR).ok_or(ModelError::Missing { kind: "geom", name: FLOOR })?;
+    let floor =
+        spec.geom_mut(FLOOR).ok_or_else(|| ModelError::Missing { kind: "geom", name: FLOOR.into() })?;
     let mut pos = *floor.pos();
     let top = pos[2];
     pos[2] -= PLANE_DROP;

@@ -3,8 +3,8 @@
 use glam::Vec3;
 use mujoco_rs::wrappers::mj_model::{MjModel, MjtGeomBase, MjtObjBase};
 
-use crate::mjcf::{FLOOR, HEIGHT_FIELD};
-use crate::model_error::ModelError;
+use super::mjcf::{FLOOR, HEIGHT_FIELD};
+use super::model_error::ModelError;
 
 /// Ground of a model: an endless plane and, on some terrains, a height field above it.
 #[derive(Debug)]
@@ -87,12 +87,12 @@ impl Ground {
     pub(crate) fn of(model: &MjModel) -> Result<Self, ModelError> {
         let floor = model
             .name_to_id(MjtObjBase::mjOBJ_GEOM, FLOOR)
-            .ok_or(ModelError::Missing { kind: "geom", name: FLOOR })?;
+            .ok_or_else(|| ModelError::Missing { kind: "geom", name: FLOOR.into() })?;
         let is_level = model.geom_type()[floor] == MjtGeomBase::mjGEOM_PLANE
             && model.geom_bodyid()[floor] == 0
             && model.geom_quat()[floor] == [1.0, 0.0, 0.0, 0.0];
         if !is_level {
-            return Err(ModelError::Kind { kind: "geom", name: FLOOR, expected: "a level plane" });
+            return Err(ModelError::Kind { kind: "geom", name: FLOOR.into(), expected: "a level plane" });
         }
         let field =
             model.name_to_id(MjtObjBase::mjOBJ_GEOM, HEIGHT_FIELD).map(|geom| height_field(model, geom));
@@ -125,7 +125,7 @@ fn height_field(model: &MjModel, geom: usize) -> HeightField {
 mod tests {
     use crate::{Character, Model, Terrain};
 
-    const HUMANOID: &str = include_str!("../../../assets/humanoid.xml");
+    const HUMANOID: &str = include_str!("../../../../assets/humanoid.xml");
 
     fn on(terrain: Terrain) -> Model {
         Model::from_mjcf(HUMANOID).unwrap().with_terrain(terrain).unwrap()
@@ -199,10 +199,10 @@ mod tests {
                     let off = (contact.position.z - below) * contact.normal.z;
                     assert!(off.abs() < 0.03, "touches {off} m off the ground at {}", contact.position);
                 }
-                let mut state = policy_core::CharacterState::default();
+                let mut state = policy_core::CharacterState::new(model.skeleton());
                 character.sense_into(&mut state);
-                let pelvis = state.bodies[0].position;
-                assert_eq!(state.ground_height, model.height_at(pelvis.x, pelvis.y));
+                let root = state.root().position;
+                assert_eq!(state.ground_height, model.height_at(root.x, root.y));
             }
         }
     }

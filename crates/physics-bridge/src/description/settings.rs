@@ -4,8 +4,8 @@ use mujoco_rs::wrappers::mj_data::MjData;
 use mujoco_rs::wrappers::mj_model::MjModel;
 use serde::{Deserialize, Serialize};
 
-use crate::layout::Layout;
-use crate::model_error::ModelError;
+use super::layout::Layout;
+use super::model_error::ModelError;
 
 /// Factors on what the MJCF says; all 1 by default, which changes no bit.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
@@ -22,7 +22,7 @@ pub struct Settings {
     pub mass: f32,
 }
 
-/// Dumps of earlier versions have no mass.
+/// Replay files of earlier versions have no mass.
 fn unchanged() -> f32 {
     1.0
 }
@@ -50,7 +50,7 @@ impl Settings {
         model.opt_mut().gravity.iter_mut().for_each(|g| *g *= f64::from(self.gravity));
         model.geom_friction_mut().iter_mut().for_each(|[slide, ..]| *slide *= f64::from(self.friction));
         let strength = f64::from(self.strength);
-        for &actuator in &layout.joint_actuator {
+        for actuator in layout.joints.iter().map(|joint| joint.actuator) {
             // SAFETY: `Layout::of` accepts only motors of fixed gain, whose first gain parameter is a
             // factor: MuJoCo uses it as an index of nothing.
             unsafe { model.actuator_gainprm_mut()[actuator][0] *= strength };

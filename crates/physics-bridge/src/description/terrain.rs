@@ -3,7 +3,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::model_error::ModelError;
+use super::model_error::ModelError;
 
 /// The ground. Anything but [`Terrain::Flat`] is a square height field of 80 m about the origin, with its
 /// lowest point at z = 0, that comes down to that height at its rim; a plane lies 0.1 m lower beneath it

@@ -1,8 +1,8 @@
 //! Bounds on MJCF from strangers, checked before MuJoCo sees the text: what would read files, exhaust memory or
 //! run for minutes while it is compiled. Refuses with the line. Whether the text is valid MJCF is MuJoCo's to say.
 
+use super::super::model_error::ModelError;
 use super::xml::{Attributes, Tag, Tags};
-use crate::model_error::ModelError;
 
 /// Longest text, bytes.
 const MOST_BYTES: usize = 4 << 20;

@@ -2,8 +2,9 @@
 
 use std::path::PathBuf;
 
-use crate::CONTROL_HZ;
-use crate::pose::PoseError;
+use policy_core::training::SkeletonError;
+
+use super::pose::PoseError;
 
 /// Why a [`Model`](crate::Model) can't be made of an MJCF.
 #[derive(Debug, thiserror::Error)]
@@ -76,43 +77,70 @@ pub enum ModelError {
         /// Found; not a number where the text has none.
         found: f64,
     },
-    /// A named part of the humanoid does not exist.
+    /// The pack holds no MJCF.
+    #[error(
+        "expected a pack with the MJCF of its body, found a pack without one, as those of version 1: pass the MJCF"
+    )]
+    NoMjcf,
+    /// A named part does not exist.
     #[error("expected a {kind} named {name}, found none")]
     Missing {
-        /// `body`, `joint`, `actuator` or `geom`.
+        /// `body`, `joint`, `motor of the joint` or `geom`.
         kind: &'static str,
         /// Its name.
-        name: &'static str,
+        name: String,
     },
     /// A named part exists and is something else.
     #[error("expected {expected} for {kind} {name}, found something else")]
     Kind {
-        /// `joint`, `actuator` or `geom`.
+        /// `body`, `joint`, `actuator`, `motor of joint` or `geom`.
         kind: &'static str,
         /// Its name.
-        name: &'static str,
+        name: String,
         /// What it should be.
         expected: &'static str,
     },
-    /// More or fewer degrees of freedom than the humanoid's.
+    /// A part of the character has no name.
+    #[error("expected a name for {kind} number {index}, found none")]
+    Unnamed {
+        /// `body` or `joint`.
+        kind: &'static str,
+        /// MuJoCo's index of it.
+        index: usize,
+    },
+    /// More or fewer parts than the skeleton has.
     #[error("expected {expected} {what}, found {found}")]
     Count {
         /// What is counted.
         what: &'static str,
-        /// The humanoid's number.
+        /// The skeleton's number.
         expected: usize,
         /// The model's number.
-        found: i64,
+        found: usize,
     },
-    /// The pelvis does not float.
-    #[error("expected the pelvis to hang on the world by a free joint, found another joint or none")]
-    FixedPelvis,
+    /// No body floats, or several.
+    #[error("expected one body with a free joint, found {found}")]
+    Root {
+        /// Bodies with a free joint.
+        found: usize,
+    },
+    /// The bodies and hinges make no skeleton.
+    #[error("in the skeleton of the MJCF: {source}")]
+    Skeleton {
+        /// What is wrong with it.
+        source: SkeletonError,
+    },
     /// The time step does not divide a control tick.
-    #[error("expected a timestep that divides 1/{CONTROL_HZ} s, found {timestep_secs} s")]
+    #[error("expected a timestep that divides 1/{control_hz} s, found {timestep_secs} s")]
     Timestep {
+        /// Control ticks per second.
+        control_hz: f32,
         /// The option in the MJCF, seconds.
         timestep_secs: f64,
     },
+    /// A motor or sensor reads or acts with a delay.
+    #[error("expected motors and sensors without delay, found some with")]
+    Delays,
     /// An integrator that can't be stepped in two halves.
     #[error("expected the integrator Euler, implicit or implicitfast, found RK4")]
     Integrator,

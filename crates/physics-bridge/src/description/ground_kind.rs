@@ -1,8 +1,8 @@
 //! Grounds with a name, to choose from and to measure on.
 
-use crate::terrain::Terrain;
+use super::terrain::Terrain;
 
-/// Kinds of ground to walk over at ease.
+/// Kinds of ground that a character can walk over.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum GroundKind {
     /// A plane.

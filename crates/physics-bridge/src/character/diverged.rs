@@ -1,9 +1,10 @@
 //! Why a step was undone.
 
 use mujoco_rs::wrappers::mj_data::MjtWarning;
-use policy_core::Body;
+use policy_core::BodyId;
 
-use crate::dump::Dump;
+use super::replay_file::ReplayFile;
+use crate::description::layout::{JointPlace, Layout};
 
 /// What was wrong with the motion after a step. The first seven are MuJoCo's own checks, after each substep;
 /// the others are checked at the end of each control tick.
@@ -36,7 +37,7 @@ pub enum Cause {
 
 impl Cause {
     /// MuJoCo's checks in the order of its warning counters.
-    pub(crate) const WARNINGS: [Cause; MjtWarning::mjNWARNING as usize] = [
+    pub(super) const WARNINGS: [Cause; MjtWarning::mjNWARNING as usize] = [
         Cause::SingularInertia,
         Cause::ContactsFull,
         Cause::ConstraintsFull,
@@ -45,6 +46,21 @@ impl Cause {
         Cause::BadAcceleration,
         Cause::BadControl,
     ];
+
+    /// The body that a number of MuJoCo's warning belongs to.
+    pub(super) fn body(self, layout: &Layout, index: usize) -> Option<BodyId> {
+        let root = BodyId::new(0);
+        let hinge =
+            |fits: &dyn Fn(&JointPlace) -> bool| layout.joints.iter().find(|j| fits(j)).map(|j| j.body);
+        match self {
+            Cause::BadPosition => hinge(&|joint| joint.qpos == index).or(Some(root)),
+            Cause::BadVelocity | Cause::BadAcceleration | Cause::SingularInertia => {
+                hinge(&|joint| joint.dof == index).or(Some(root))
+            }
+            Cause::BadControl => hinge(&|joint| joint.ctrl == index),
+            _ => None,
+        }
+    }
 
     /// Unit of the value and the limit; empty where there is none.
     fn unit(self) -> &'static str {
@@ -100,16 +116,17 @@ pub struct Diverged {
     /// What was wrong.
     pub cause: Cause,
     /// The first body with that fault; `None` when it belongs to no body.
-    pub body: Option<Body>,
+    pub body: Option<BodyId>,
     /// Value and limit; `None` for MuJoCo's own checks, which do not tell the value.
     pub excess: Option<Excess>,
     /// The state before the tick, to be saved and replayed.
-    pub dump: Box<Dump>,
+    pub replay: Box<ReplayFile>,
 }
 
 impl Diverged {
     fn details(&self) -> String {
-        let body = self.body.map_or_else(String::new, |body| format!(", body {}", body.name()));
+        let name = |body| &self.replay.skeleton().body(body).name;
+        let body = self.body.map_or_else(String::new, |body| format!(", body {}", name(body)));
         let unit = self.cause.unit();
         let excess = self.excess.map_or_else(String::new, |Excess { value, limit }| {
             format!(", {value}{unit} where at most {limit}{unit} is plausible")

@@ -2,15 +2,16 @@
 
 use glam::{DMat3, DVec3, Quat, Vec3};
 use mujoco_rs::wrappers::mj_model::{MjModel, MjtGeomBase};
-use policy_core::Body;
+use policy_core::BodyId;
 
-use crate::layout::Layout;
+use super::convert::rotation;
+use super::layout::Layout;
 
 /// A primitive fixed to a body.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Shape {
     /// The body that it moves with.
-    pub body: Body,
+    pub body: BodyId,
     /// Its centre in the body frame, metres.
     pub position: Vec3,
     /// `body_from_shape`, a unit quaternion.
@@ -54,7 +55,7 @@ pub(crate) fn shapes(model: &MjModel, layout: &Layout) -> (Box<[Shape]>, Box<[us
             _ => return None,
         };
         let position = DVec3::from(model.geom_pos()[geom]).as_vec3();
-        let rotation = crate::sense::rotation(model.geom_quat()[geom]);
+        let rotation = rotation(model.geom_quat()[geom]);
         Some((Shape { body, position, rotation, kind }, geom))
     };
     let found: Vec<_> = (0..model.ngeom() as usize).filter_map(shape).collect();

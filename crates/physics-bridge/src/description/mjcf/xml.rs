@@ -2,7 +2,7 @@
 //! no MJCF. Refuses what MJCF has no use for and what the two could read differently: declarations, CDATA,
 //! bytes of value 0.
 
-use crate::model_error::ModelError;
+use super::super::model_error::ModelError;
 
 /// A tag.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
