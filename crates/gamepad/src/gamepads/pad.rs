@@ -7,7 +7,7 @@ use crate::pads::{MAX_OUTPUT_LEN, Model, OutputEncoder, PadOutput};
 use crate::recording::{PadEvent, RecordedPad, Recorder, RecordingError};
 use crate::{GamepadState, PadSession, ReportError};
 
-/// Reports that set the parser up and must be in a recording that starts later.
+/// Most set-up reports kept, for a recording that starts later.
 const MOST_SET_UP: usize = 16;
 
 /// One connected pad.
@@ -41,7 +41,7 @@ impl Pad {
         }
     }
 
-    /// The last report that was refused, and why.
+    /// Why the last refused report was refused.
     #[must_use]
     pub fn last_error(&self) -> Option<ReportError> {
         self.last_error
@@ -62,7 +62,7 @@ impl Pad {
     /// Ends the recording and flushes it; true when there was one.
     ///
     /// # Errors
-    /// [`RecordingError`] when the output failed now or before.
+    /// [`RecordingError`] when the output fails or has failed before.
     pub fn stop_recording(&mut self) -> Result<bool, RecordingError> {
         if let Some(error) = self.recording_error.take() {
             self.recorder = None;
@@ -128,7 +128,7 @@ impl Pad {
         }
     }
 
-    /// A recording that fails ends; [`Pad::stop_recording`] tells.
+    /// Ends a recording that fails; [`Pad::stop_recording`] returns the error.
     fn write(&mut self, now_secs: f64, event: PadEvent<'_>) {
         if let Some((start_secs, recorder)) = &mut self.recorder
             && let Err(error) = recorder.record(now_secs - *start_secs, event)

@@ -32,7 +32,7 @@ fn excerpt(text: &str, line: usize) -> String {
     text.lines().nth(line.saturating_sub(1)).unwrap_or_default().trim().chars().take(LONGEST).collect()
 }
 
-/// Reads at most one byte over the limit, so that a huge file costs nothing.
+/// Reads at most one byte over the limit, so that a huge file is not read.
 pub(super) fn read_limited(path: &Path) -> Result<String, ScriptError> {
     let mut bytes = Vec::new();
     File::open(path)?.take(MAX_SCRIPT_BYTES as u64 + 1).read_to_end(&mut bytes)?;
@@ -43,7 +43,7 @@ pub(super) fn read_limited(path: &Path) -> Result<String, ScriptError> {
         .map_err(|error| ScriptError::NotUtf8 { offset: error.utf8_error().valid_up_to() })
 }
 
-/// A whole file whose cross-checks passed.
+/// A file that passed all checks across entries.
 #[derive(Deserialize)]
 #[serde(try_from = "ScriptFile")]
 struct Checked(ScriptFile);
@@ -147,7 +147,7 @@ fn check_next(before: &[Entry], next: &Entry) -> Result<(), Defect> {
     }
 }
 
-/// A time or a length of time in seconds.
+/// A time or a duration in seconds.
 #[derive(Clone, Copy, Default, Deserialize)]
 #[serde(try_from = "f64")]
 pub(super) struct Secs(pub(super) f64);
@@ -186,7 +186,7 @@ impl TryFrom<f32> for Pull {
     }
 }
 
-/// Buttons without repetition, hence never more than there are.
+/// Buttons without repetition.
 #[derive(Default)]
 pub(super) struct ButtonList(pub(super) Vec<ButtonName>);
 
