@@ -3,7 +3,6 @@
 //! Owns the meaning of a script over time. `parse` reads the text, `error` has the errors.
 //! The format is described in `assets/scripts/README.md`.
 
-mod button_name;
 mod error;
 mod parse;
 mod track;
@@ -113,14 +112,14 @@ impl Script {
             }
         }
         for &name in &entry.press.0 {
-            self.buttons.push(at, name.button(), true);
+            self.buttons.push(at, name, true);
         }
         for &name in &entry.release.0 {
-            self.buttons.push(at, name.button(), false);
+            self.buttons.push(at, name, false);
         }
         for &name in &entry.tap.0 {
-            self.buttons.push(at, name.button(), true);
-            self.buttons.push(at + TAP_SECS, name.button(), false);
+            self.buttons.push(at, name, true);
+            self.buttons.push(at + TAP_SECS, name, false);
         }
     }
 }

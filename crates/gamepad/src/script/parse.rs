@@ -8,7 +8,6 @@ use std::path::Path;
 use serde::Deserialize;
 use serde::de::{Deserializer, Error as _, SeqAccess, Visitor};
 
-use super::button_name::ButtonName;
 use super::error::{Defect, ScriptError};
 use super::{MAX_SCRIPT_BYTES, MAX_SCRIPT_ENTRIES, MAX_SCRIPT_SECS, TAP_SECS};
 use crate::Button;
@@ -81,8 +80,8 @@ impl Entry {
 
     fn contradiction(&self) -> Option<Button> {
         let lists = [&self.press.0, &self.release.0, &self.tap.0];
-        let count = |button: &ButtonName| lists.iter().filter(|list| list.contains(button)).count();
-        lists.into_iter().flatten().find(|button| count(button) > 1).map(|name| name.button())
+        let count = |button: &Button| lists.iter().filter(|list| list.contains(button)).count();
+        lists.into_iter().flatten().find(|button| count(button) > 1).copied()
     }
 }
 
@@ -188,7 +187,7 @@ impl TryFrom<f32> for Pull {
 
 /// Buttons without repetition.
 #[derive(Default)]
-pub(super) struct ButtonList(pub(super) Vec<ButtonName>);
+pub(super) struct ButtonList(pub(super) Vec<Button>);
 
 impl<'de> Deserialize<'de> for ButtonList {
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
@@ -202,9 +201,9 @@ impl<'de> Deserialize<'de> for ButtonList {
 
             fn visit_seq<A: SeqAccess<'de>>(self, mut seq: A) -> Result<ButtonList, A::Error> {
                 let mut names = Vec::new();
-                while let Some(name) = seq.next_element::<ButtonName>()? {
+                while let Some(name) = seq.next_element::<Button>()? {
                     if names.contains(&name) {
-                        return Err(A::Error::custom(Defect::Twice(name.button())));
+                        return Err(A::Error::custom(Defect::Twice(name)));
                     }
                     names.push(name);
                 }
