@@ -44,12 +44,10 @@ enum Verb {
     Test(TestArgs),
     /// Check who may import whom.
     Imports,
-    /// Run cargo-deny: licences, banned crates and sources.
-    Deny {
-        /// Install cargo-deny first when it is missing; takes some minutes.
-        #[arg(long)]
-        install: bool,
-    },
+    /// Check licences, banned crates, sources and security advisories with cargo-deny.
+    ///
+    /// Installs the pinned cargo-deny in third_party/tools first; this takes about two minutes, once.
+    Deny,
     /// Measure, and print a table or one JSON object.
     Bench(bench::BenchArgs),
     /// Feed random bytes to the parsers; needs a nightly toolchain and cargo-fuzz.
@@ -84,12 +82,9 @@ struct TestArgs {
     /// Only say which system packages are missing.
     #[arg(long)]
     no_install: bool,
-    /// Count a check that cannot run here (no cross target, no cargo-deny) as failed.
+    /// Count a skipped check (no cross target, no network for the advisories) as failed.
     #[arg(long)]
     strict: bool,
-    /// Install cargo-deny when it is missing, as is done where CI is set; takes some minutes.
-    #[arg(long)]
-    deny: bool,
 }
 
 fn main() -> ExitCode {
@@ -112,12 +107,10 @@ fn dispatch(verb: Verb) -> Result<ExitCode> {
         Verb::Demo(arguments) => return demo::run(&workspace, arguments.arguments),
         Verb::Test(arguments) => {
             setup::prepare(&workspace, Purpose::Tests, !arguments.no_install)?;
-            let install_deny = arguments.deny || std::env::var_os("CI").is_some();
-            let options = checks::Options { strict: arguments.strict, install_deny };
-            return Ok(checks::run(&workspace, options));
+            return Ok(checks::run(&workspace, checks::ALL, arguments.strict));
         }
         Verb::Imports => checks::imports::check(&workspace)?,
-        Verb::Deny { install } => checks::deny::check(&workspace, install)?,
+        Verb::Deny => return Ok(checks::run(&workspace, checks::DENY, false)),
         Verb::Bench(arguments) => bench::run(&workspace, &arguments)?,
         Verb::Fuzz(arguments) => fuzz::run(&workspace, &arguments)?,
         Verb::Pad { arguments } => {

@@ -14,6 +14,7 @@ use std::path::{Path, PathBuf};
 
 use anyhow::{Context, Result};
 
+pub use download::remove_folder;
 pub use packages::Purpose;
 
 use self::library::Installation;
