@@ -212,7 +212,9 @@ fn fault_of(status: ExitStatus, said: &str) -> Outcome {
         let (place, message) = (lines.next().unwrap_or_default(), lines.next().unwrap_or_default());
         return Outcome::Broken(Fault::Panic, format!("{place} {}", without_numbers(message)));
     }
-    let last = said.lines().rfind(|line| !line.trim().is_empty()).unwrap_or_default();
+    let says_something = |line: &&str| !line.trim().is_empty() && !line.starts_with("note:");
+    let last = said.lines().find(|line| is_out_of_memory(line));
+    let last = last.or_else(|| said.lines().rfind(says_something)).unwrap_or_default();
     let fault = if is_out_of_memory(said) { Fault::Memory } else { Fault::Abort };
     Outcome::Broken(fault, format!("{status} {}", without_numbers(last)).trim().to_owned())
 }
