@@ -6,6 +6,7 @@ mod bench;
 mod checks;
 mod demo;
 mod fuzz;
+mod hostile;
 mod setup;
 mod workspace;
 
@@ -44,6 +45,8 @@ enum Verb {
     Test(TestArgs),
     /// Check who may import whom.
     Imports,
+    /// Check that items and fields have the names of the field, and that no source file is too long.
+    Words,
     /// Check licences, banned crates, sources and security advisories with cargo-deny.
     ///
     /// Installs the pinned cargo-deny in third_party/tools first; this takes about two minutes, once.
@@ -52,6 +55,11 @@ enum Verb {
     Bench(bench::BenchArgs),
     /// Feed random bytes to the parsers; needs a nightly toolchain and cargo-fuzz.
     Fuzz(fuzz::FuzzArgs),
+    /// Give broken files to everything that reads files, and report panics, aborts, hangs and too much memory.
+    ///
+    /// Each file is a sound one of the project with a fault put in. Time and memory of each reader are bounded. A file
+    /// of every finding is kept in out/hostile.
+    Hostile(hostile::HostileArgs),
     /// Ask the gamepad crate about connected pads: `cargo xtask pad doctor`.
     Pad {
         /// What to ask; `doctor` lists devices and shows what they report.
@@ -110,9 +118,11 @@ fn dispatch(verb: Verb) -> Result<ExitCode> {
             return Ok(checks::run(&workspace, checks::ALL, arguments.strict));
         }
         Verb::Imports => checks::imports::check(&workspace)?,
+        Verb::Words => checks::words::check(&workspace)?,
         Verb::Deny => return Ok(checks::run(&workspace, checks::DENY, false)),
         Verb::Bench(arguments) => bench::run(&workspace, &arguments)?,
         Verb::Fuzz(arguments) => fuzz::run(&workspace, &arguments)?,
+        Verb::Hostile(arguments) => hostile::run(&workspace, &arguments)?,
         Verb::Pad { arguments } => {
             run(workspace
                 .cargo()

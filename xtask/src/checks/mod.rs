@@ -1,8 +1,10 @@
 //! Every check that CI runs, quick ones first. All of them run, whatever fails; a table says how each ended.
 
+mod definitions;
 mod deny;
 pub mod imports;
 mod steps;
+pub mod words;
 
 use std::process::ExitCode;
 use std::time::{Duration, Instant};

@@ -5,7 +5,7 @@ use std::process::Command;
 
 use anyhow::Result;
 
-use super::{Step, Verdict, deny, imports};
+use super::{Step, Verdict, deny, imports, words};
 use crate::workspace::{Workspace, answers, output_of, run};
 
 /// The checks that cargo-deny does.
@@ -18,6 +18,7 @@ const ADVISORIES: Step = Step { name: "security advisories", run: deny::advisori
 pub const ALL: &[Step] = &[
     Step { name: "formatting", run: formatting },
     Step { name: "who imports whom", run: |workspace| imports::check(workspace).map(|()| Verdict::Passed) },
+    Step { name: "names and lengths", run: |workspace| words::check(workspace).map(|()| Verdict::Passed) },
     RULES,
     ADVISORIES,
     Step { name: "no_std: wasm32", run: |workspace| no_std(workspace, "wasm32-unknown-unknown") },
