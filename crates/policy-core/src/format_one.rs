@@ -138,6 +138,7 @@ impl SkillOne {
             name: self.name,
             policy: self.policy,
             entry: self.entry,
+            minimum_speed_mps: 0.0,
             returns_to: self.returns_to,
             discriminator: self.discriminator,
             end,

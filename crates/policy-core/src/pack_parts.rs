@@ -182,6 +182,7 @@ pub(crate) fn skill(entry: &SkillEntry, names: &[&str], m: &Manifest) -> Result<
         name: entry.name.clone(),
         policy: PolicyId::from(find_node(field(), &entry.policy, names)?),
         entry: entry.entry.iter().map(|n| find_node(field(), n, names)).collect::<Result<_, _>>()?,
+        minimum_speed_mps: minimum_speed(entry, field())?,
         returns_to: find_node(field(), &entry.returns_to, names)?,
         discriminator: match &entry.discriminator {
             None => None,
@@ -191,6 +192,16 @@ pub(crate) fn skill(entry: &SkillEntry, names: &[&str], m: &Manifest) -> Result<
         },
         end: end_condition(&entry.end, field())?,
     })
+}
+
+fn minimum_speed(entry: &SkillEntry, owner: String) -> Result<f32, PackError> {
+    let found = entry.minimum_speed_mps;
+    let (field, expected) = ("minimum_speed_mps", "0 to 20");
+    if (0.0..=20.0).contains(&found) {
+        Ok(found)
+    } else {
+        Err(PackError::Number { field, owner, expected, found })
+    }
 }
 
 fn end_condition(end: &EndEntry, owner: String) -> Result<EndCondition, PackError> {
