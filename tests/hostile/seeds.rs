@@ -10,9 +10,9 @@ use viewer::app::Layout;
 
 /// Report descriptor of a pad with four axes and twelve buttons.
 const DESCRIPTOR: &[u8] = &[
-    0x05, 0x01, 0x09, 0x05, 0xa1, 0x01, 0x15, 0x00, 0x26, 0xff, 0x00, 0x75, 0x08, 0x95, 0x04, 0x09, 0x30, 0x09,
-    0x31, 0x09, 0x32, 0x09, 0x35, 0x81, 0x02, 0x25, 0x07, 0x75, 0x04, 0x95, 0x01, 0x09, 0x39, 0x81, 0x42, 0x25,
-    0x01, 0x75, 0x01, 0x95, 0x0c, 0x05, 0x09, 0x19, 0x01, 0x29, 0x0c, 0x81, 0x02, 0xc0,
+    0x05, 0x01, 0x09, 0x05, 0xa1, 0x01, 0x15, 0x00, 0x26, 0xff, 0x00, 0x75, 0x08, 0x95, 0x04, 0x09, 0x30,
+    0x09, 0x31, 0x09, 0x32, 0x09, 0x35, 0x81, 0x02, 0x25, 0x07, 0x75, 0x04, 0x95, 0x01, 0x09, 0x39, 0x81,
+    0x42, 0x25, 0x01, 0x75, 0x01, 0x95, 0x0c, 0x05, 0x09, 0x19, 0x01, 0x29, 0x0c, 0x81, 0x02, 0xc0,
 ];
 
 /// Writes the sound files below `folder`.
@@ -32,9 +32,11 @@ pub fn write(folder: &Path) {
     copy("mesh", assets.join("humanoid.glb"));
     copy("mjcf", assets.join("humanoid.xml"));
     copy("plan", assets.join("recipes/pack/humanoid.toml"));
-    for (reader, ending, from) in
-        [("recipe", "toml", "recipes"), ("script", "ron", "scripts"), ("checkpoint", "safetensors", "checkpoints")]
-    {
+    for (reader, ending, from) in [
+        ("recipe", "toml", "recipes"),
+        ("script", "ron", "scripts"),
+        ("checkpoint", "safetensors", "checkpoints"),
+    ] {
         for path in files(&assets.join(from), ending) {
             // A small file is quicker to break, and its header is a larger part of it.
             if fs::metadata(&path).is_ok_and(|meta| meta.len() < 3 << 20) {
@@ -61,7 +63,8 @@ fn write_made(folder: &Path, assets: &Path) {
     let mjcf = fs::read_to_string(assets.join("humanoid.xml")).expect("the model is there");
     let character = Character::new(&Model::from_mjcf(&mjcf).expect("the model compiles"));
     make("dump", "fallen.json", &character.dump().to_bytes());
-    let qpos = serde_json::to_string(&[character.pose().qpos.to_vec(), character.pose().qpos.to_vec()]).expect("numbers are JSON");
+    let qpos = serde_json::to_string(&[character.pose().qpos.to_vec(), character.pose().qpos.to_vec()])
+        .expect("numbers are JSON");
     let poses = format!("{{\"format\":\"policy-space poses\",\"clip\":\"still\",\"hz\":30,\"qpos\":{qpos}}}");
     make("poses", "still.json", poses.as_bytes());
     let layout = folder.join("layout/layout.ron");

@@ -24,9 +24,10 @@ pub struct BenchArgs {
 /// What can be measured.
 #[derive(Debug, Subcommand)]
 enum Subject {
-    /// Nanoseconds to evaluate a policy, blend and tick, beside four inference libraries on the same network.
+    /// Nanoseconds to evaluate a policy, blend, tick and save, beside four inference libraries on the same network.
     Policy {
-        /// Print one JSON object: evaluate_ns, fused_ns, cached_ns, batched_ns_per_character, tick_ns, peers_ns.
+        /// Print one JSON object: evaluate_ns, fused_ns, cached_ns, batched_ns_per_character, tick_ns, pack_load_ms,
+        /// pack_bytes, save_ns, restore_ns, save_bytes_ns, restore_bytes_ns, peers_ns.
         #[arg(long)]
         json: bool,
         /// Leave the other libraries out; building them the first time takes many minutes.
