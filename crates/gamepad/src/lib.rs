@@ -17,6 +17,7 @@ pub mod calibration;
 pub mod descriptor;
 pub mod device;
 pub mod doctor;
+mod files;
 mod gamepads;
 mod input;
 pub mod pads;

@@ -8,7 +8,6 @@ mod plain;
 mod player;
 mod recorder;
 
-use std::fs::File;
 use std::io::Read;
 use std::path::Path;
 
@@ -18,6 +17,7 @@ pub use recorder::Recorder;
 
 use crate::GamepadState;
 use crate::calibration::Calibration;
+use crate::files::open_regular;
 use crate::pads::{Bus, PadId};
 
 /// Largest recording accepted, in bytes: many hours of input.
@@ -116,7 +116,7 @@ impl Recording {
     pub fn load(path: &Path) -> Result<Self, RecordingError> {
         let in_file = |cause| RecordingError::InFile { file: path.to_owned(), cause: Box::new(cause) };
         let mut bytes = Vec::new();
-        File::open(path)
+        open_regular(path)
             .and_then(|file| file.take(MAX_RECORDING_BYTES as u64 + 1).read_to_end(&mut bytes))
             .map_err(|error| in_file(error.into()))?;
         Self::from_bytes(bytes).map_err(in_file)

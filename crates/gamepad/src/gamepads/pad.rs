@@ -19,7 +19,7 @@ pub struct Pad {
     descriptor: Option<Vec<u8>>,
     encoder: Option<OutputEncoder>,
     /// Feature reports, and replies with calibrations.
-    set_up: Vec<(bool, Box<[u8]>)>,
+    start_up: Vec<(bool, Box<[u8]>)>,
     last_error: Option<ReportError>,
     recorder: Option<(f64, Recorder<Box<dyn Write + Send>>)>,
     recording_error: Option<RecordingError>,
@@ -34,7 +34,7 @@ impl Pad {
             session,
             descriptor,
             encoder,
-            set_up: Vec::new(),
+            start_up: Vec::new(),
             last_error: None,
             recorder: None,
             recording_error: None,
@@ -81,7 +81,7 @@ impl Pad {
             descriptor: self.descriptor.clone(),
         };
         let mut recorder = Recorder::new(out, &pad)?;
-        for (feature, report) in &self.set_up {
+        for (feature, report) in &self.start_up {
             let event = if *feature { PadEvent::Feature(report) } else { PadEvent::Report(report) };
             recorder.record(0.0, event)?;
         }
@@ -123,8 +123,8 @@ impl Pad {
     }
 
     fn keep(&mut self, feature: bool, report: &[u8]) {
-        if self.set_up.len() < MOST_SET_UP {
-            self.set_up.push((feature, report.into()));
+        if self.start_up.len() < MOST_SET_UP {
+            self.start_up.push((feature, report.into()));
         }
     }
 

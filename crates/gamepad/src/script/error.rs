@@ -4,12 +4,15 @@ use std::path::PathBuf;
 
 use super::{MAX_SCRIPT_BYTES, MAX_SCRIPT_ENTRIES, MAX_SCRIPT_SECS};
 
+/// Most characters of a reason that are shown: it may quote the file.
+const MAX_REASON: usize = 200;
+
 /// Why a script was refused.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum ScriptError {
     /// The text is not a script: invalid RON, an unknown field or button, or a value out of its range.
-    #[error("line {line}, column {column}: {reason} (in `{excerpt}`)")]
+    #[error("line {line}, column {column}: {} (in `{excerpt}`)", printable(&reason.to_string(), MAX_REASON))]
     Malformed {
         /// Line at which reading stopped, from 1.
         line: usize,
@@ -17,7 +20,7 @@ pub enum ScriptError {
         column: usize,
         /// What was expected and found.
         reason: Box<ron::error::Error>,
-        /// That line, cut short.
+        /// That line, cut short, without control characters.
         excerpt: String,
     },
     /// The text is too long.
@@ -49,6 +52,12 @@ impl From<std::io::Error> for ScriptError {
     fn from(error: std::io::Error) -> Self {
         Self::Unreadable(error)
     }
+}
+
+/// The first `most` characters of text from a file, with control characters replaced, so that it can't control a terminal.
+pub(super) fn printable(text: &str, most: usize) -> String {
+    let shown = |c: char| if c.is_control() { char::REPLACEMENT_CHARACTER } else { c };
+    text.chars().map(shown).take(most).collect()
 }
 
 /// A value that is valid in RON but not in a script; shown inside [`ScriptError::Malformed`].

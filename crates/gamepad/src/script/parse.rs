@@ -1,16 +1,16 @@
 //! The RON form of a script. Every range is checked while reading, so that each error has its line.
 
 use std::fmt;
-use std::fs::File;
 use std::io::Read;
 use std::path::Path;
 
 use serde::Deserialize;
 use serde::de::{Deserializer, Error as _, SeqAccess, Visitor};
 
-use super::error::{Defect, ScriptError};
+use super::error::{Defect, ScriptError, printable};
 use super::{MAX_SCRIPT_BYTES, MAX_SCRIPT_ENTRIES, MAX_SCRIPT_SECS, TAP_SECS};
 use crate::Button;
+use crate::files::open_regular;
 
 pub(super) fn parse(text: &str) -> Result<ScriptFile, ScriptError> {
     if text.len() > MAX_SCRIPT_BYTES {
@@ -28,13 +28,13 @@ pub(super) fn parse(text: &str) -> Result<ScriptFile, ScriptError> {
 
 fn excerpt(text: &str, line: usize) -> String {
     const LONGEST: usize = 80;
-    text.lines().nth(line.saturating_sub(1)).unwrap_or_default().trim().chars().take(LONGEST).collect()
+    printable(text.lines().nth(line.saturating_sub(1)).unwrap_or_default().trim(), LONGEST)
 }
 
 /// Reads at most one byte over the limit, so that a huge file is not read.
 pub(super) fn read_limited(path: &Path) -> Result<String, ScriptError> {
     let mut bytes = Vec::new();
-    File::open(path)?.take(MAX_SCRIPT_BYTES as u64 + 1).read_to_end(&mut bytes)?;
+    open_regular(path)?.take(MAX_SCRIPT_BYTES as u64 + 1).read_to_end(&mut bytes)?;
     if bytes.len() > MAX_SCRIPT_BYTES {
         return Err(ScriptError::TooLong { found: bytes.len() });
     }
