@@ -17,10 +17,10 @@ pub mod ppo;
 pub mod recipe;
 mod rng;
 pub mod run;
-mod setting;
+pub mod storage;
 pub mod strip;
 pub mod style;
 pub mod training;
-pub mod workplace;
+pub mod workspace;
 
 pub use rng::{NoiseTable, Rng};

@@ -11,7 +11,7 @@ use trainer::env::Normalisers;
 use trainer::nn::{Network, Pass};
 use trainer::pack::{Ingredient, PackPlan, bind};
 use trainer::recipe::Recipe;
-use trainer::run::Run;
+use trainer::run::{Existing, Run};
 use trainer::workplace::Workplace;
 
 fn project() -> PathBuf {
@@ -76,7 +76,7 @@ fn every_recipe_runs_and_binds_into_a_pack() {
     for recipe in order {
         let recipe = small(recipe);
         let (skill, recipe_paths) = (recipe.skill.clone(), recipe.paths.clone());
-        let mut run = workplace.prepare(recipe.clone(), 3, false).unwrap();
+        let mut run = workplace.prepare(recipe.clone(), 3, Existing::Refuse).unwrap();
         let actors = |run: &Run| -> Vec<Network> {
             let learning = run.training.learner.actors.iter().filter(|a| !a.frozen);
             learning.map(|a| a.network.clone()).collect()
@@ -89,9 +89,14 @@ fn every_recipe_runs_and_binds_into_a_pack() {
         let moved = actors(&run).iter().zip(&before).all(|(now, before)| now != before);
         assert!(moved, "{skill}: a policy learned nothing");
         run.save().unwrap();
-        let resumed = workplace.prepare(recipe, 3, true).unwrap();
-        assert_eq!(actors(&resumed), actors(&run), "{skill}");
-        assert_eq!(resumed.training.samples, run.training.samples, "{skill}");
+        let (learned, samples, metrics) =
+            (actors(&run), run.training.samples, run.folder.path().join("metrics.csv"));
+        // A run holds its folder until it is dropped.
+        assert!(workplace.prepare(recipe.clone(), 3, Existing::Resume).is_err(), "{skill}");
+        drop(run);
+        let resumed = workplace.prepare(recipe, 3, Existing::Resume).unwrap();
+        assert_eq!(actors(&resumed), learned, "{skill}");
+        assert_eq!(resumed.training.samples, samples, "{skill}");
         let checkpoint = workplace.checkpoint(&skill);
         match recipe_paths.is_empty() {
             true => ingredients.push(Ingredient::load(&skill, &checkpoint).unwrap()),
@@ -101,7 +106,7 @@ fn every_recipe_runs_and_binds_into_a_pack() {
                 .filter(|i| recipe_paths.iter().flatten().any(|n| *n == i.skill))
                 .for_each(|i| *i = Ingredient::load(&i.skill, &checkpoint).unwrap()),
         }
-        let metrics = std::fs::read_to_string(run.folder.join("metrics.csv")).unwrap();
+        let metrics = std::fs::read_to_string(metrics).unwrap();
         assert_eq!(metrics.lines().count(), 3, "{skill}");
     }
 
@@ -128,11 +133,11 @@ fn what_was_kept_is_enough_to_go_on(workplace: &Workplace, folder: &Path) {
     }
     let alone = Workplace { kept, runs: folder.join("runs_alone"), ..workplace.clone() };
     for skill in ["locomotion", "get_up"] {
-        let mut run = alone.prepare(small(alone.recipe(skill).unwrap()), 3, true).unwrap();
+        let mut run = alone.prepare(small(alone.recipe(skill).unwrap()), 3, Existing::Resume).unwrap();
         run.advance().unwrap();
         assert_eq!(run.training.samples > 288, skill == "locomotion", "{skill}");
     }
-    let missing = alone.prepare(small(alone.recipe("jog").unwrap()), 3, true);
+    let missing = alone.prepare(small(alone.recipe("jog").unwrap()), 3, Existing::Resume);
     assert!(missing.is_ok(), "its parent was trained together with others");
 }
 
@@ -159,7 +164,7 @@ fn a_character_that_starts_in_its_clip_is_like_it_until_it_loses_it() {
     let workplace = workplace_with_clips(folder.path());
     let text = "skill = \"walk\"\nclips = [{ name = \"walk\" }]\n[[phases]]\nsamples = 100000\ntask = 0.0\nimitation = 1.0\n";
     let recipe = small(Recipe::parse(Path::new("x.toml"), text).unwrap());
-    let best = best_imitation(&mut workplace.prepare(recipe, 1, false).unwrap());
+    let best = best_imitation(&mut workplace.prepare(recipe, 1, Existing::Overwrite).unwrap());
     assert!((0.5..1.0).contains(&best), "{best}");
 }
 
@@ -181,21 +186,21 @@ fn imitators_are_like_the_clips_of_the_nodes_they_rest_at() {
     let walk = "skill = \"walk\"\nclips = [{ name = \"walk\" }]\n[[phases]]\nsamples = 24\ntask = 0.0\n";
     let idle = "skill = \"idle\"\nparent = \"walk\"\nclips = [{ name = \"idle\" }]\n[[phases]]\nsamples = 24\ntask = 0.5\n";
     for skill in [walk, idle] {
-        let mut run = workplace.prepare(recipe(skill), 1, false).unwrap();
+        let mut run = workplace.prepare(recipe(skill), 1, Existing::Overwrite).unwrap();
         run.advance().unwrap();
         run.save().unwrap();
     }
     let both = "skill = \"both\"\npaths = [[\"walk\", \"idle\"]]\n[[phases]]\nsamples = 100000\ntask = 0.5\n";
     let mut all = recipe(both);
     all.environment.start.along = true;
-    assert_eq!(best_imitation(&mut workplace.prepare(all.clone(), 1, false).unwrap()), 0.0);
+    assert_eq!(best_imitation(&mut workplace.prepare(all.clone(), 1, Existing::Overwrite).unwrap()), 0.0);
     // Those that are no imitators, here nearly surely all, are neither paid for it nor fail by it.
     all.skill = "others".into();
     (all.environment.imitators, all.environment.imitation) = (1e-9, 0.5);
-    assert_eq!(best_imitation(&mut workplace.prepare(all.clone(), 1, false).unwrap()), 0.0);
+    assert_eq!(best_imitation(&mut workplace.prepare(all.clone(), 1, Existing::Overwrite).unwrap()), 0.0);
     all.skill = "again".into();
     (all.environment.imitators, all.environment.imitation) = (1.0, 0.5);
-    let best = best_imitation(&mut workplace.prepare(all.clone(), 1, false).unwrap());
+    let best = best_imitation(&mut workplace.prepare(all.clone(), 1, Existing::Overwrite).unwrap());
     assert!((0.3..1.0).contains(&best), "{best}");
 
     // Where nothing is near enough, who has lost the clip in the first tick is not found again in the next.
@@ -208,7 +213,7 @@ fn imitators_are_like_the_clips_of_the_nodes_they_rest_at() {
         std::fs::write(path, toml::to_string(&recipe).unwrap()).unwrap();
     }
     all.skill = "strict".into();
-    let mut run = strict.prepare(all, 1, false).unwrap();
+    let mut run = strict.prepare(all, 1, Existing::Overwrite).unwrap();
     run.advance().unwrap();
     let mut mean = || {
         let reports = (0..6).map(|_| run.advance().unwrap().population);

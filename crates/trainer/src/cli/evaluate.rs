@@ -9,7 +9,7 @@ use anyhow::{Context, Result};
 use clap::Args;
 use physics_bridge::Model;
 use policy_core::{CharacterPack, CharacterState};
-use trainer::checkpoint::write_atomically;
+use trainer::storage::write_atomically;
 use trainer::clip::ClipFolder;
 use trainer::evaluate::{Effort, clip_states, evaluate};
 use trainer::recipe::Recipe;

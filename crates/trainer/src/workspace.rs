@@ -6,21 +6,23 @@ use std::path::{Path, PathBuf};
 use anyhow::{Context, Result, bail};
 use physics_bridge::Model;
 
-use crate::checkpoint::{Checkpoint, write_atomically};
+use crate::checkpoint::{ACTOR, Checkpoint, CheckpointError, EMA, PARENT_DISCRIMINATOR};
 use crate::clip::{ClipError, ClipFolder};
 use crate::env::{Demonstrations, Normalisers};
 use crate::recipe::Recipe;
-use crate::run::{METRICS, Run};
-use crate::training::{AVERAGE, PARENT_DISCRIMINATOR, Training};
+use crate::run::{
+    CHECKPOINT, Existing, Loaded, METRICS, METRICS_FILE, Run, RunFolder, newest_checkpoint,
+};
+use crate::training::Training;
 
 /// Where everything a run reads and writes is.
 #[derive(Clone, Debug)]
-pub struct Workplace {
+pub struct Workspace {
     /// Folder of recipes.
     pub recipes: PathBuf,
     /// Folder of runs.
     pub runs: PathBuf,
-    /// Folder of slim checkpoints that came with the project: what a run goes on from when it has none of its own.
+    /// Folder of slim checkpoints that came with the project: what a run starts from when it has none of its own.
     pub kept: PathBuf,
     /// Folder of clips.
     pub clips: ClipFolder,
@@ -30,7 +32,7 @@ pub struct Workplace {
     pub normalisers: Normalisers,
 }
 
-impl Workplace {
+impl Workspace {
     /// The recipe of a skill.
     ///
     /// # Errors
@@ -62,8 +64,8 @@ impl Workplace {
         let mut ordered: Vec<Recipe> = Vec::new();
         while !left.is_empty() {
             let ready = |r: &Recipe| {
-                let after = r.environment.start.after.iter().map(|after| &after.skill);
-                let mut needed = r.parent.iter().chain(r.paths.iter().flatten()).chain(after);
+                let hand_over = r.first().environment.reset.hand_over.iter().map(|hand_over| &hand_over.skill);
+                let mut needed = r.parent.iter().chain(r.paths.iter().flatten()).chain(hand_over);
                 needed.all(|p| ordered.iter().any(|o| o.skill == *p))
             };
             let Some(skill) = left.values().find(|r| ready(r)).map(|r| r.skill.clone()) else {
@@ -81,14 +83,15 @@ impl Workplace {
     /// Path of a skill's checkpoint.
     #[must_use]
     pub fn checkpoint(&self, skill: &str) -> PathBuf {
-        self.runs.join(skill).join("checkpoint.safetensors")
+        self.runs.join(skill).join(CHECKPOINT)
     }
 
-    /// Path of the checkpoint to start from: the run's own, else the kept one.
-    #[must_use]
-    pub fn newest(&self, skill: &str) -> PathBuf {
-        let (own, kept) = (self.checkpoint(skill), self.kept.join(format!("{skill}.safetensors")));
-        if !own.exists() && kept.exists() { kept } else { own }
+    /// The newest checkpoint of a skill's run, else the kept one.
+    ///
+    /// # Errors
+    /// When a checkpoint is there and can't be read.
+    pub fn newest(&self, skill: &str) -> Result<Option<(Checkpoint, PathBuf)>, CheckpointError> {
+        newest_or_kept(&self.runs, &self.kept, skill)
     }
 
     /// The clips of a recipe, ready to learn from.
@@ -109,40 +112,70 @@ impl Workplace {
         Ok(Demonstrations::from_clips(&clips, &self.model, &self.normalisers.frame)?)
     }
 
-    /// Makes a run ready: from its checkpoint with `resume` and if there is one, else from the start.
+    /// Makes a run ready and locks its folder. With [`Existing::Resume`] it continues from its newest checkpoint, or from
+    /// the kept one; otherwise it starts anew.
     ///
     /// # Errors
-    /// When something that it needs is missing or wrong.
-    pub fn prepare(&self, recipe: Recipe, seed: u64, resume: bool) -> Result<Run> {
-        let folder = self.runs.join(&recipe.skill);
-        std::fs::create_dir_all(&folder).with_context(|| format!("cannot make {}", folder.display()))?;
-        let path = self.newest(&recipe.skill);
-        let earlier = if resume && path.exists() { Some(Checkpoint::load(&path)?) } else { None };
-        // A resumed run must not meet the same episodes again.
-        let seed_now = seed.wrapping_add(earlier.as_ref().map_or(0, |c| c.progress.samples));
+    /// When a run is there and `existing` refuses it, another trainer holds the folder, or something that the run needs is
+    /// missing or wrong.
+    pub fn prepare(&self, recipe: Recipe, seed: u64, existing: Existing) -> Result<Run> {
         let text = toml::to_string(&recipe).context("cannot write the recipe")?;
+        let folder = RunFolder::open(self.runs.join(&recipe.skill), existing)?;
+        let own = if existing == Existing::Overwrite { None } else { folder.load()? };
+        let mut notes = Vec::new();
+        if let Some(holder) = folder.crashed() {
+            notes.push(format!("the last trainer here ended without finishing: {holder}"));
+        }
+        if let Some(Loaded { torn: Some(error), path, .. }) = &own {
+            notes.push(format!("{error}; continuing from {}", path.display()));
+        }
+        let earlier = match own {
+            Some(Loaded { checkpoint, path, .. }) => Some((checkpoint, path)),
+            None if existing == Existing::Resume => self.newest(&recipe.skill)?,
+            None => None,
+        };
+        // A resumed run must not meet the same episodes again.
+        let seed_now = seed.wrapping_add(earlier.as_ref().map_or(0, |(c, _)| c.progress.samples));
         let parts = self.parts(&recipe, seed_now)?;
         let mut training = Training::new(recipe, &self.model, self.normalisers.clone(), parts, seed_now);
-        let metrics = folder.join("metrics.csv");
-        if earlier.is_none() || !metrics.exists() {
-            write_atomically(&folder.join("seed.txt"), format!("{seed}\n").as_bytes())?;
-            write_atomically(&metrics, format!("{METRICS}\n").as_bytes())?;
+        if existing == Existing::Overwrite {
+            folder.clear()?;
         }
-        write_atomically(&folder.join("recipe.toml"), text.as_bytes())?;
+        if earlier.is_none() || !folder.path().join(METRICS_FILE).exists() {
+            folder.write("seed.txt", &format!("{seed}\n"))?;
+            folder.write(METRICS_FILE, &format!("{METRICS}\n"))?;
+        }
+        folder.write("recipe.toml", &text)?;
         let secs = match earlier {
-            Some(checkpoint) => restore(&mut training, &checkpoint, &path)?,
+            Some((checkpoint, path)) => restore(&mut training, &checkpoint, &path)?,
             None => 0.0,
         };
-        Ok(Run::new(training, folder, seed, secs))
+        Ok(Run::new(training, folder, seed, secs, notes))
     }
+}
+
+/// The newest checkpoint of a skill's run in the folder `runs`, else the one in the folder `kept`.
+///
+/// # Errors
+/// When a checkpoint is there and can't be read.
+pub fn newest_or_kept(
+    runs: &Path,
+    kept: &Path,
+    skill: &str,
+) -> Result<Option<(Checkpoint, PathBuf)>, CheckpointError> {
+    if let Some(Loaded { checkpoint, path, .. }) = newest_checkpoint(&runs.join(skill))? {
+        return Ok(Some((checkpoint, path)));
+    }
+    let kept = kept.join(format!("{skill}.safetensors"));
+    let loaded = kept.exists().then(|| Checkpoint::load(&kept)).transpose()?;
+    Ok(loaded.map(|checkpoint| (checkpoint, kept)))
 }
 
 /// Puts a checkpoint's networks into a training; returns the seconds spent before.
 fn restore(training: &mut Training, checkpoint: &Checkpoint, path: &Path) -> Result<f64> {
     for (role, network, adam) in training.networks_mut() {
-        // What a parent's style is like, or that between two skills, can be learned anew; a running mean begins where the
-        // policy is.
-        let actor = role.strip_suffix(AVERAGE).map(|before| format!("{before}actor"));
+        // Discriminators of a parent or half-way can be learned anew; a moving average begins where its policy is.
+        let actor = role.strip_suffix(EMA).map(|before| format!("{before}{ACTOR}"));
         let known = checkpoint.networks.contains_key(&role);
         if (role == PARENT_DISCRIMINATOR || role.contains('-')) && !known {
             continue;
@@ -162,7 +195,7 @@ fn restore(training: &mut Training, checkpoint: &Checkpoint, path: &Path) -> Res
         }
     }
     training.samples = checkpoint.progress.samples;
-    training.learner.actors.iter_mut().for_each(|a| a.rate = checkpoint.progress.actor_rate);
+    training.learner.actors.iter_mut().for_each(|a| a.learning_rate = checkpoint.progress.learning_rate);
     training.learner.rng = checkpoint.progress.rng;
     Ok(checkpoint.progress.secs)
 }

@@ -1,45 +1,44 @@
-//! Starts where an episodic skill hands over: dropped limp, raised by the skill as in a game.
+//! Starts where an episodic skill hands over: the character is dropped limp and the skill raises it, as in a game.
 
 use policy_core::{Command as GameCommand, Controller, SkillEnd};
 
 use super::super::command::{Command, DT_SECS};
-use super::super::population::Stage;
-use super::Agent;
+use super::super::env::{Env, EnvContext};
 
-/// Ticks that a rise may take; one that takes longer starts nothing.
+/// Ticks that standing up may take; after that the start is given up.
 const RISE_TICKS: u32 = 180;
 
-/// An episodic skill that raises a character, and where on the course it hands over.
+/// An episodic skill that raises a character, and where on the graph it hands over.
 #[derive(Clone, Debug)]
-pub struct Recovery {
-    /// A controller of a pack with the skill; it recovers nobody by itself.
+pub struct HandOver {
+    /// A controller of a pack with the skill, without automatic recovery.
     pub controller: Controller,
     /// Index of the skill in that pack.
     pub skill: usize,
-    /// Node of the course that the skill returns to.
+    /// Node of the graph that the skill returns to.
     pub node: usize,
 }
 
-impl Agent {
-    /// Starts an episode at the tick in which the skill hands over, at the node it returns to; false when the stage has no such
-    /// skill or it did not come to that.
-    pub(super) fn start_risen(&mut self, stage: &Stage<'_>) -> bool {
-        let Some(recovery) = stage.recovery else { return false };
-        let pose = stage.demonstrations[recovery.node].draw_start(&mut self.rng);
-        self.drop_limp(stage, &pose);
-        let mut controller = recovery.controller.clone();
+impl Env {
+    /// Starts an episode at the tick in which the skill hands over to its node; false when there is no such skill or it did not
+    /// succeed.
+    pub(in super::super) fn start_at_hand_over(&mut self, context: &EnvContext<'_>) -> bool {
+        let Some(hand_over) = context.hand_over else { return false };
+        let pose = context.demonstrations[hand_over.node].sample_reference_state(&mut self.rng);
+        self.drop_limp(context, &pose);
+        let mut controller = hand_over.controller.clone();
         controller.reset();
-        let mut asked = GameCommand { skill: Some(recovery.skill), ..GameCommand::default() };
+        let mut asked = GameCommand { skill: Some(hand_over.skill), ..GameCommand::default() };
         for _ in 0..RISE_TICKS {
             let targets = *controller.tick(&self.state, &asked, DT_SECS);
             asked.skill = None;
             match controller.report().skill_ended {
                 Some((_, SkillEnd::Recognised)) => {
-                    self.imitated = None;
+                    self.tracking = None;
                     self.command =
-                        Command::start_at(stage.config, stage.course, recovery.node, &mut self.rng);
-                    let at = (self.position(), self.heading().angle());
-                    self.command.aim(stage.config, stage.course, at, &mut self.rng);
+                        Command::start_at(&context.config.command, context.graph, hand_over.node, &mut self.rng);
+                    let at = (self.root_position(), self.heading().angle());
+                    self.command.aim(&context.config.command, context.graph, at, &mut self.rng);
                     return true;
                 }
                 Some(_) => return false,
@@ -50,7 +49,7 @@ impl Agent {
                 return false;
             }
             self.character.sense_into(&mut self.state);
-            self.push_frame(stage);
+            self.push_frame(context);
         }
         false
     }
@@ -65,15 +64,16 @@ mod tests {
     use policy_core::{Body, CharacterPack, ControllerConfig};
 
     use super::super::super::config::EnvironmentConfig;
-    use super::super::super::course::{Course, CourseNode};
     use super::super::super::demonstrations::Demonstrations;
+    use super::super::super::graph::{GraphNode, TrainingGraph};
     use super::super::super::normalisers::Normalisers;
+    use super::super::super::termination::TerminationHeights;
     use super::*;
     use crate::Rng;
     use crate::clip::tests::still;
 
     #[test]
-    fn the_skill_that_ships_hands_over_somebody_who_is_up() {
+    fn the_shipped_skill_hands_over_a_character_that_stands() {
         let assets = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../assets");
         let model = Model::load(assets.join("humanoid.xml")).unwrap();
         let pack = std::fs::read(assets.join("humanoid.pack.safetensors")).unwrap();
@@ -85,9 +85,9 @@ mod tests {
         let clips =
             Demonstrations::from_clips(&[(still(30), 1.0, false)], &model, &normalisers.frame).unwrap();
         let config = EnvironmentConfig::default();
-        let nodes = ["walk", "idle"].map(|name| CourseNode::new(name, &config, 1.0)).to_vec();
-        let course = Course::new(nodes, vec![vec![1, 0]]);
-        let recovery = Recovery {
+        let nodes = ["walk", "idle"].map(|name| GraphNode::new(name, &config, 1.0)).to_vec();
+        let graph = TrainingGraph::new(nodes, vec![vec![1, 0]]);
+        let hand_over = HandOver {
             skill: pack.skill_named("get_up").unwrap(),
             controller: Controller::with_config(
                 pack,
@@ -95,24 +95,25 @@ mod tests {
             ),
             node: 1,
         };
-        let stage = Stage {
+        let context = EnvContext {
             config: &config,
-            course: &course,
+            graph: &graph,
             demonstrations: &[&clips, &clips],
             start_demonstrations: None,
-            recovery: Some(&recovery),
+            hand_over: Some(&hand_over),
             normalisers: &normalisers,
+            heights: &TerminationHeights::new(&config.termination).unwrap(),
         };
-        let mut agent = Agent::new(&model, Rng::new(7, 0));
+        let mut env = Env::new(&model, Rng::new(7, 0));
         let mut up = 0;
         for _ in 0..8 {
-            if agent.start_risen(&stage) {
-                assert!(agent.state.height_of(Body::Pelvis) > 0.7 && !agent.imitates());
-                assert_eq!(course.node_at(agent.command.place), Some(1));
+            if env.start_at_hand_over(&context) {
+                assert!(env.state.height_of(Body::Pelvis) > 0.7 && !env.tracks());
+                assert_eq!(graph.node_at(env.command.position), Some(1));
                 up += 1;
             }
         }
         assert!(up >= 6, "{up} of 8");
-        assert!(!agent.start_risen(&Stage { recovery: None, ..stage }));
+        assert!(!env.start_at_hand_over(&EnvContext { hand_over: None, ..context }));
     }
 }
