@@ -120,8 +120,7 @@ impl Checkpoint {
             .map(|(role, t)| (role.clone(), (t.network.sizes().to_vec(), t.adam.steps)))
             .collect();
         let checksums = HashMap::new();
-        let progress =
-            Progress { format: FORMAT, seed, samples, secs, learning_rate, rng, sizes, checksums };
+        let progress = Progress { format: FORMAT, seed, samples, secs, learning_rate, rng, sizes, checksums };
         Self { networks, progress }
     }
 

@@ -72,7 +72,13 @@ fn version_1_loads_with_the_roles_of_today() {
 fn sizes_are_compared_with_the_tensors_before_anything_is_allocated() {
     let folder = tempfile::tempdir().unwrap();
     // 20 GB and far beyond: allocating this would end the process.
-    for sizes in ["[16384,16384,16384]", "[1,16384,16384,16384,16384,16384,1]", "[18446744073709551615,2]", "[3]", "[]"] {
+    for sizes in [
+        "[16384,16384,16384]",
+        "[1,16384,16384,16384,16384,16384,1]",
+        "[18446744073709551615,2]",
+        "[3]",
+        "[]",
+    ] {
         let path = with_metadata(folder.path(), &format!(r#"{{"actor":[{sizes},0]}}"#), "actor");
         let error = Checkpoint::load(&path).unwrap_err();
         assert!(matches!(error, CheckpointError::Content { .. }), "{sizes}: {error}");

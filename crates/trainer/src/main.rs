@@ -128,6 +128,7 @@ impl Arguments {
             clips: self.clips()?,
             model: self.model()?,
             normalisers: self.normalisers()?,
+            parents: None,
         })
     }
 }

@@ -19,7 +19,8 @@ const MOST_BYTES: u64 = 1 << 20;
 /// # Errors
 /// When the file can't be read or doesn't hold them.
 pub fn load(path: &Path) -> Result<Normalisers, CheckpointError> {
-    let data = read_bounded(path, MOST_BYTES).map_err(|source| CheckpointError::Io { path: path.to_owned(), source })?;
+    let data = read_bounded(path, MOST_BYTES)
+        .map_err(|source| CheckpointError::Io { path: path.to_owned(), source })?;
     let wrong =
         |expected: String, found: String| CheckpointError::Content { path: path.to_owned(), expected, found };
     let tensors =

@@ -39,6 +39,11 @@ impl Workspace {
 
     /// Where a trained skill is: in its own run, else in one that trained it together with others.
     fn trained(&self, name: &str) -> Result<Option<(Checkpoint, PathBuf)>> {
+        if let Some(together) = self.parents.as_ref().map(|run| self.newest(run)).transpose()?.flatten()
+            && TrainedSkill::is_in(name, &together.0)
+        {
+            return Ok(Some(together));
+        }
         if let Some(own) = self.newest(name)? {
             return Ok(Some(own));
         }
@@ -55,7 +60,8 @@ impl Workspace {
         let (checkpoint, path) = self
             .trained(name)?
             .with_context(|| format!("{needed_by} starts from {name}, which is not trained yet"))?;
-        let TrainedSkill { actor, discriminator, .. } = TrainedSkill::from_checkpoint(name, &checkpoint, &path)?;
+        let TrainedSkill { actor, discriminator, .. } =
+            TrainedSkill::from_checkpoint(name, &checkpoint, &path)?;
         let recipe = self.recipe(name)?;
         ensure!(!recipe.clips.is_empty(), "expected {name} to have clips of its own, found a joint recipe");
         Ok(Skill {
@@ -72,7 +78,8 @@ impl Workspace {
         let mut rng = Rng::new(seed, 1);
         let mut nodes = vec![GraphNode::new(&recipe.skill, &recipe.last().environment, EDGE_SHARES[1])];
         let learning = DiscriminatorLearner::new(recipe.first().discriminator.clone(), None, seed, 2);
-        let own = NodeDiscriminator { demonstrations: self.demonstrations(recipe)?, discriminator: Some(learning) };
+        let own =
+            NodeDiscriminator { demonstrations: self.demonstrations(recipe)?, discriminator: Some(learning) };
         let mut start_demonstrations = self.start_clips(recipe)?;
         let (actors, critic, scorers, path) = match &recipe.parent {
             None => {
@@ -115,8 +122,9 @@ impl Workspace {
 
 /// Heights that tell standing from lying, of the recipe's last phase.
 fn heights(recipe: &Recipe) -> Result<TerminationHeights> {
-    TerminationHeights::new(&recipe.last().environment.termination)
-        .map_err(|name| anyhow!("{}: expected bodies of the character in min_heights, found {name}", recipe.skill))
+    TerminationHeights::new(&recipe.last().environment.termination).map_err(|name| {
+        anyhow!("{}: expected bodies of the character in min_heights, found {name}", recipe.skill)
+    })
 }
 
 /// Sizes of a recipe's critic.

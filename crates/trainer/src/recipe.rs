@@ -15,7 +15,7 @@ mod checks;
 mod file;
 mod ranges;
 
-pub use file::ClipShare;
+pub use file::{ClipShare, is_plain};
 
 /// How one skill is trained, or several of them together.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -128,6 +128,17 @@ impl Recipe {
     #[must_use]
     pub fn total_samples(&self) -> u64 {
         self.phases.iter().fold(0, |sum, phase| sum.saturating_add(phase.samples))
+    }
+
+    /// Drops what comes after so many samples, if that is before the end.
+    pub fn stop_at(&mut self, samples: u64) {
+        let mut left = samples.max(1);
+        self.phases.retain_mut(|phase| {
+            let keep = left > 0;
+            phase.samples = phase.samples.min(left);
+            left -= phase.samples;
+            keep
+        });
     }
 
     /// Index of the phase after `samples` samples; the last one at the end.

@@ -46,7 +46,13 @@ pub struct Run {
 }
 
 impl Run {
-    pub(crate) fn new(training: Training, folder: RunFolder, seed: u64, secs: f64, notes: Vec<String>) -> Self {
+    pub(crate) fn new(
+        training: Training,
+        folder: RunFolder,
+        seed: u64,
+        secs: f64,
+        notes: Vec<String>,
+    ) -> Self {
         Self { training, folder, seed, secs, notes, iterations: 0 }
     }
 

@@ -170,7 +170,8 @@ mod tests {
             std::fs::write(folder.path().join(name), "x").unwrap();
         }
         remove_unfinished(folder.path()).unwrap();
-        let left: Vec<_> = std::fs::read_dir(folder.path()).unwrap().map(|e| e.unwrap().file_name()).collect();
+        let left: Vec<_> =
+            std::fs::read_dir(folder.path()).unwrap().map(|e| e.unwrap().file_name()).collect();
         assert_eq!(left, ["kept"]);
     }
 

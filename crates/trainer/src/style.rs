@@ -4,7 +4,7 @@
 use policy_core::DISCRIMINATOR_INPUT_LEN;
 
 use crate::amp::{DiscriminatorConfig, DiscriminatorLearner, DiscriminatorReport, style_reward};
-use crate::env::{TrainingGraph, Demonstrations, GraphPosition};
+use crate::env::{Demonstrations, GraphPosition, TrainingGraph};
 
 /// A discriminator learns from rows in which its node weighs more than this.
 const LEARNING_WEIGHT: f32 = 0.6;
@@ -92,7 +92,12 @@ impl Discriminators {
     }
 
     /// Gradient steps of all discriminators; returns the mean over those that learned.
-    pub fn learn(&mut self, graph: &TrainingGraph, positions: Positions<'_>, inputs: &[f32]) -> DiscriminatorReport {
+    pub fn learn(
+        &mut self,
+        graph: &TrainingGraph,
+        positions: Positions<'_>,
+        inputs: &[f32],
+    ) -> DiscriminatorReport {
         let mut sum = DiscriminatorReport::default();
         let mut count = 0.0;
         let nodes = self.scorers.len() - self.halfway.len();
@@ -115,7 +120,13 @@ impl Discriminators {
 
 /// Weight of a discriminator at a position: that of its node, or how near the position is to the middle of its edge. Where an edge has a
 /// scorer half-way, those of its ends weigh nothing beyond the middle.
-fn weight(graph: &TrainingGraph, halfway: &[usize], nodes: usize, scorer: usize, position: GraphPosition) -> f32 {
+fn weight(
+    graph: &TrainingGraph,
+    halfway: &[usize],
+    nodes: usize,
+    scorer: usize,
+    position: GraphPosition,
+) -> f32 {
     match halfway.get(scorer.wrapping_sub(nodes)) {
         Some(edge) if *edge == position.edge => 1.0 - (2.0 * position.t - 1.0).abs(),
         Some(_) => 0.0,
@@ -125,7 +136,12 @@ fn weight(graph: &TrainingGraph, halfway: &[usize], nodes: usize, scorer: usize,
 }
 
 /// Rows at positions where a discriminator weighs more than `least`.
-fn rows_above((edges, blend): Positions<'_>, weight: impl Fn(GraphPosition) -> f32, least: f32, out: &mut Vec<u32>) {
+fn rows_above(
+    (edges, blend): Positions<'_>,
+    weight: impl Fn(GraphPosition) -> f32,
+    least: f32,
+    out: &mut Vec<u32>,
+) {
     out.clear();
     let heavy = |(edge, t): (&usize, &f32)| weight(GraphPosition { edge: *edge, t: *t }) > least;
     out.extend(
@@ -136,7 +152,7 @@ fn rows_above((edges, blend): Positions<'_>, weight: impl Fn(GraphPosition) -> f
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::env::{GraphNode, EnvironmentConfig};
+    use crate::env::{EnvironmentConfig, GraphNode};
 
     #[test]
     fn the_weights_of_all_judges_sum_to_one() {

@@ -182,13 +182,13 @@ impl Training {
         self.discriminators.set_config(&phase.discriminator);
         if self.recipe.paths.is_empty() {
             let last = self.shared.graph.nodes().len() - 1;
-            let node = GraphNode::new(&self.recipe.skill, &phase.environment, self.shared.graph.nodes()[last].share);
+            let node =
+                GraphNode::new(&self.recipe.skill, &phase.environment, self.shared.graph.nodes()[last].share);
             self.shared.graph.set_node(last, node);
         }
         let randomisation = &phase.environment.randomisation;
-        let models_of = |config: &EnvironmentConfig| {
-            (config.randomisation.terrain_metres, config.randomisation.dynamics)
-        };
+        let models_of =
+            |config: &EnvironmentConfig| (config.randomisation.terrain_metres, config.randomisation.dynamics);
         if before.map_or((0.0, 0.0), models_of) != models_of(&phase.environment) {
             let models = randomisation.models(&self.model)?;
             let demonstrations = self.discriminators.demonstrations();

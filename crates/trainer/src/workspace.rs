@@ -10,10 +10,19 @@ use crate::checkpoint::{ACTOR, Checkpoint, CheckpointError, EMA, PARENT_DISCRIMI
 use crate::clip::{ClipError, ClipFolder};
 use crate::env::{Demonstrations, Normalisers};
 use crate::recipe::Recipe;
-use crate::run::{
-    CHECKPOINT, Existing, Loaded, METRICS, METRICS_FILE, Run, RunFolder, newest_checkpoint,
-};
+use crate::run::{CHECKPOINT, Existing, Loaded, METRICS, METRICS_FILE, Run, RunFolder, newest_checkpoint};
 use crate::training::Training;
+
+/// What a new run begins with.
+#[derive(Debug)]
+pub enum Start {
+    /// The networks of the recipe's parents, or random ones.
+    Parents,
+    /// The networks of this checkpoint, with no samples taken; its path is named in errors.
+    From((Checkpoint, PathBuf)),
+    /// The whole state of this checkpoint.
+    Continue((Checkpoint, PathBuf)),
+}
 
 /// Where everything a run reads and writes is.
 #[derive(Clone, Debug)]
@@ -30,6 +39,8 @@ pub struct Workspace {
     pub model: Model,
     /// The graph's normalisers.
     pub normalisers: Normalisers,
+    /// Run to take parents from that were trained together, before any other; usually none.
+    pub parents: Option<String>,
 }
 
 impl Workspace {
@@ -64,7 +75,8 @@ impl Workspace {
         let mut ordered: Vec<Recipe> = Vec::new();
         while !left.is_empty() {
             let ready = |r: &Recipe| {
-                let hand_over = r.first().environment.reset.hand_over.iter().map(|hand_over| &hand_over.skill);
+                let hand_over =
+                    r.first().environment.reset.hand_over.iter().map(|hand_over| &hand_over.skill);
                 let mut needed = r.parent.iter().chain(r.paths.iter().flatten()).chain(hand_over);
                 needed.all(|p| ordered.iter().any(|o| o.skill == *p))
             };
@@ -112,15 +124,34 @@ impl Workspace {
         Ok(Demonstrations::from_clips(&clips, &self.model, &self.normalisers.frame)?)
     }
 
-    /// Makes a run ready and locks its folder. With [`Existing::Resume`] it continues from its newest checkpoint, or from
-    /// the kept one; otherwise it starts anew.
+    /// Makes the run of a recipe ready and locks its folder. With [`Existing::Resume`] it continues from its newest checkpoint,
+    /// or from the kept one; otherwise it starts anew.
+    ///
+    /// # Errors
+    /// As [`Workspace::prepare_named`].
+    pub fn prepare(&self, recipe: Recipe, seed: u64, existing: Existing) -> Result<Run> {
+        let name = recipe.skill.clone();
+        let kept = if existing == Existing::Resume { self.newest(&name)? } else { None };
+        let start = kept.map_or(Start::Parents, Start::Continue);
+        self.prepare_named(&name, recipe, seed, existing, start)
+    }
+
+    /// Makes a run of this name ready and locks its folder. With [`Existing::Resume`] and a run there it continues that; else
+    /// it begins as `start` says.
     ///
     /// # Errors
     /// When a run is there and `existing` refuses it, another trainer holds the folder, or something that the run needs is
     /// missing or wrong.
-    pub fn prepare(&self, recipe: Recipe, seed: u64, existing: Existing) -> Result<Run> {
+    pub fn prepare_named(
+        &self,
+        name: &str,
+        recipe: Recipe,
+        seed: u64,
+        existing: Existing,
+        start: Start,
+    ) -> Result<Run> {
         let text = toml::to_string(&recipe).context("cannot write the recipe")?;
-        let folder = RunFolder::open(self.runs.join(&recipe.skill), existing)?;
+        let folder = RunFolder::open(self.runs.join(name), existing)?;
         let own = if existing == Existing::Overwrite { None } else { folder.load()? };
         let mut notes = Vec::new();
         if let Some(holder) = folder.crashed() {
@@ -129,10 +160,14 @@ impl Workspace {
         if let Some(Loaded { torn: Some(error), path, .. }) = &own {
             notes.push(format!("{error}; continuing from {}", path.display()));
         }
-        let earlier = match own {
-            Some(Loaded { checkpoint, path, .. }) => Some((checkpoint, path)),
-            None if existing == Existing::Resume => self.newest(&recipe.skill)?,
-            None => None,
+        let earlier = match (own, start) {
+            (Some(Loaded { checkpoint, path, .. }), _) => Some((checkpoint, path)),
+            (None, Start::Continue(earlier)) => Some(earlier),
+            (None, Start::From((mut checkpoint, path))) => {
+                (checkpoint.progress.samples, checkpoint.progress.secs) = (0, 0.0);
+                Some((checkpoint, path))
+            }
+            (None, Start::Parents) => None,
         };
         // A resumed run must not meet the same episodes again.
         let seed_now = seed.wrapping_add(earlier.as_ref().map_or(0, |(c, _)| c.progress.samples));

@@ -136,7 +136,8 @@ impl DiscriminatorLearner {
             let network = &self.network;
             self.lanes.par_iter_mut().for_each(|lane| {
                 lane.gradient.fill(0.0);
-                lane.loss = lane.pass.accumulate(network, &lane.input, GRADIENT_PENALTY, scale, &mut lane.gradient);
+                lane.loss =
+                    lane.pass.accumulate(network, &lane.input, GRADIENT_PENALTY, scale, &mut lane.gradient);
             });
             let (first, others) = self.lanes.split_first_mut().expect("there are lanes");
             for lane in others {

@@ -9,10 +9,10 @@ use anyhow::{Context, Result};
 use clap::Args;
 use physics_bridge::Model;
 use policy_core::{CharacterPack, CharacterState};
-use trainer::storage::write_atomically;
 use trainer::clip::ClipFolder;
 use trainer::evaluate::{Effort, clip_states, evaluate};
 use trainer::recipe::Recipe;
+use trainer::storage::write_atomically;
 
 /// Arguments of the verb.
 #[derive(Args)]

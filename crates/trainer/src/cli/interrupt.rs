@@ -43,9 +43,10 @@ impl Interrupt {
         let mut caught = Vec::new();
         for (number, name) in KNOWN {
             let this = Arc::new(AtomicBool::new(false));
-            let registered = signal_hook::flag::register_conditional_shutdown(*number, 128 + number, any.clone())
-                .and_then(|_| signal_hook::flag::register(*number, any.clone()))
-                .and_then(|_| signal_hook::flag::register(*number, this.clone()));
+            let registered =
+                signal_hook::flag::register_conditional_shutdown(*number, 128 + number, any.clone())
+                    .and_then(|_| signal_hook::flag::register(*number, any.clone()))
+                    .and_then(|_| signal_hook::flag::register(*number, this.clone()));
             registered.with_context(|| format!("cannot catch {name}"))?;
             caught.push((Signal(*number), this));
         }

@@ -24,7 +24,8 @@ pub(crate) fn run(normalisers: &Normalisers, runs: &Path, kept: &Path, arguments
     for skill in &arguments.skills {
         let folder = runs.join(skill);
         let loaded = newest_checkpoint(&folder)?;
-        let checkpoint = loaded.with_context(|| format!("expected a run in {}", folder.display()))?.checkpoint;
+        let checkpoint =
+            loaded.with_context(|| format!("expected a run in {}", folder.display()))?.checkpoint;
         let path = kept.join(format!("{skill}.safetensors"));
         checkpoint.slim().save(&path)?;
         say(format_args!("wrote {}", path.display()))?;

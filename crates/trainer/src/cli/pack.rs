@@ -6,9 +6,9 @@ use anyhow::{Context, Result, ensure};
 use clap::Args;
 use physics_bridge::Model;
 use trainer::checkpoint::{Checkpoint, CheckpointError};
-use trainer::storage::write_atomically;
 use trainer::env::Normalisers;
-use trainer::pack::{TrainedSkill, PackPlan, PlannedPolicy, bind};
+use trainer::pack::{PackPlan, PlannedPolicy, TrainedSkill, bind};
+use trainer::storage::write_atomically;
 
 use super::output::say;
 
@@ -49,7 +49,10 @@ pub(crate) fn run(
         };
         let known = own.is_some();
         trained.extend(own);
-        ensure!(known || a.partial, "expected {name} to be trained, found no checkpoint: leave it out by --partial");
+        ensure!(
+            known || a.partial,
+            "expected {name} to be trained, found no checkpoint: leave it out by --partial"
+        );
     }
     trained.retain(|t| !a.without.contains(&t.skill));
     plan = plan.only(|skill| trained.iter().any(|t| t.skill == skill));

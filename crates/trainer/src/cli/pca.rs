@@ -11,9 +11,9 @@ use physics_bridge::Model;
 use plotters::prelude::*;
 use policy_core::{CharacterPack, Mlp, OBSERVATION_LEN};
 use rayon::prelude::*;
-use trainer::storage::write_atomically;
 use trainer::evaluate::Subject;
 use trainer::pca::{Components, correlation};
+use trainer::storage::write_atomically;
 
 use super::output::say;
 

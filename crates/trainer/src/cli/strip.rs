@@ -7,11 +7,11 @@ use anyhow::{Context, Result};
 use clap::Args;
 use physics_bridge::Model;
 use policy_core::{Body, CharacterPack, CharacterState};
-use trainer::storage::write_atomically;
 use trainer::clip::ClipFolder;
 use trainer::env::DT_SECS;
 use trainer::evaluate::{STANCE_METRES, clip_states, pose_error, watch, watch_layers, watch_skill};
 use trainer::recipe::Recipe;
+use trainer::storage::write_atomically;
 use trainer::strip::{Row, draw};
 
 use super::output::say;

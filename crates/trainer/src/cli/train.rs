@@ -1,6 +1,6 @@
 //! `trainer train`: one skill, or the whole graph in order.
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use std::time::Duration;
 
@@ -8,30 +8,34 @@ use anyhow::Result;
 use clap::Args;
 use indicatif::{ProgressBar, ProgressStyle};
 use trainer::env::{DT_SECS, NodeReport, REPORTED_NODES, TrainingGraph};
+use trainer::lineage::Lineage;
 use trainer::recipe::Recipe;
 use trainer::run::{Existing, Run, RunError, holds_a_run};
 use trainer::workspace::Workspace;
 
-use super::interrupt::Interrupt;
+use super::interrupt::{Interrupt, Signal};
 use super::output::{complain, say};
 
 /// Arguments of the verb.
 #[derive(Args)]
 pub(crate) struct Arguments {
     /// Skill whose recipe to run, or the file of a recipe.
-    #[arg(required_unless_present = "all", conflicts_with = "all")]
+    #[arg(required_unless_present_any = ["all", "plan"], conflicts_with_all = ["all", "plan"])]
     skill: Option<String>,
     /// Run all recipes, parents before children.
-    #[arg(long)]
+    #[arg(long, conflicts_with = "plan")]
     all: bool,
+    /// Run a lineage: runs in order, with what each starts from, and averages.
+    #[arg(long, value_name = "FILE")]
+    plan: Option<PathBuf>,
     /// Continue existing runs from their last checkpoint; finished runs are left alone.
     #[arg(long, conflicts_with = "overwrite")]
     resume: bool,
     /// Delete existing runs and start anew.
     #[arg(long)]
     overwrite: bool,
-    /// Seed of the random numbers.
-    #[arg(long, default_value_t = 1)]
+    /// Seed of the random numbers; a lineage has its own.
+    #[arg(long, default_value_t = 1, conflicts_with = "plan")]
     seed: u64,
     /// Threads, 1 to 1024; the processor's number by default.
     #[arg(long, value_parser = clap::value_parser!(u16).range(1..=1024))]
@@ -52,6 +56,20 @@ pub(crate) fn run(workspace: &Workspace, arguments: &Arguments) -> Result<ExitCo
         (_, true) => Existing::Overwrite,
         _ => Existing::Refuse,
     };
+    let mut stopped = None;
+    let mut step = |run: &mut Run| -> Result<bool> {
+        run.notes.iter().for_each(|note| complain(note));
+        train(run, arguments.iterations, &interrupt)?;
+        stopped = interrupt.caught().map(|signal| {
+            complain(&how_to_continue(run, signal, arguments));
+            signal.exit_code()
+        });
+        Ok(stopped.is_none())
+    };
+    if let Some(plan) = &arguments.plan {
+        Lineage::load(plan)?.execute(workspace, existing, &mut step)?;
+        return Ok(stopped.unwrap_or(ExitCode::SUCCESS));
+    }
     let recipes = match &arguments.skill {
         Some(file) if file.ends_with(".toml") => vec![Recipe::load(Path::new(file))?],
         Some(skill) => vec![workspace.recipe(skill)?],
@@ -65,20 +83,26 @@ pub(crate) fn run(workspace: &Workspace, arguments: &Arguments) -> Result<ExitCo
     }
     for recipe in recipes {
         let mut run = workspace.prepare(recipe, arguments.seed, existing)?;
-        run.notes.iter().for_each(|note| complain(note));
-        train(&mut run, arguments.iterations, &interrupt)?;
-        if let Some(signal) = interrupt.caught() {
-            let (samples, folder) = (run.training.samples, run.folder.path().display());
-            let again = arguments.skill.as_deref().unwrap_or("--all");
-            complain(&format!(
-                "stopped by {} after {samples} samples, saved in {folder}; \
-                 continue with `trainer train {again} --resume`",
-                signal.name()
-            ));
-            return Ok(signal.exit_code());
+        if !step(&mut run)? {
+            break;
         }
     }
-    Ok(ExitCode::SUCCESS)
+    Ok(stopped.unwrap_or(ExitCode::SUCCESS))
+}
+
+/// What a user who stopped a run should know.
+fn how_to_continue(run: &Run, signal: Signal, arguments: &Arguments) -> String {
+    let again = match (&arguments.skill, &arguments.plan) {
+        (Some(skill), _) => skill.clone(),
+        (None, Some(plan)) => format!("--plan {}", plan.display()),
+        (None, None) => "--all".to_owned(),
+    };
+    format!(
+        "stopped by {} after {} samples, saved in {}; continue with `trainer train {again} --resume`",
+        signal.name(),
+        run.training.samples,
+        run.folder.path().display()
+    )
 }
 
 fn add(sums: &mut [NodeReport; REPORTED_NODES], more: &[NodeReport; REPORTED_NODES]) {
@@ -136,7 +160,9 @@ fn train(run: &mut Run, iterations: Option<u64>, interrupt: &Interrupt) -> Resul
             nodes = Default::default();
         }
     }
-    run.save()?;
+    if done > 0 {
+        run.save()?;
+    }
     bar.finish();
     Ok(())
 }

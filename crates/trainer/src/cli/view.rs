@@ -8,9 +8,9 @@ use anyhow::{Context, Result, bail};
 use clap::Args;
 use physics_bridge::Model;
 use serde::Serialize;
-use trainer::storage::write_atomically;
 use trainer::clip::{ClipFolder, load_file};
 use trainer::env::{Fitted, fit};
+use trainer::storage::write_atomically;
 
 use super::output::say;
 

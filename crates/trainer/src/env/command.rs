@@ -224,13 +224,7 @@ impl Command {
         self.follow_stick(graph, root);
     }
 
-    fn renew_target(
-        &mut self,
-        config: &CommandConfig,
-        position: Vec2,
-        heading: Option<f32>,
-        rng: &mut Rng,
-    ) {
+    fn renew_target(&mut self, config: &CommandConfig, position: Vec2, heading: Option<f32>, rng: &mut Rng) {
         let secs = rng.range(config.target_secs[0], config.target_secs[1]);
         self.target_ticks = (secs / DT_SECS).max(1.0) as u32;
         self.stop = rng.chance(config.stop_share);

@@ -144,7 +144,8 @@ fn a_sweep_goes_to_both_ends_and_does_not_rest() {
 
 #[test]
 fn the_position_follows_what_is_asked_no_faster_than_an_edge_allows() {
-    let config = CommandConfig { edge_secs: 1.0, jump_share: 1.0, stick_share: 1.0, ..CommandConfig::default() };
+    let config =
+        CommandConfig { edge_secs: 1.0, jump_share: 1.0, stick_share: 1.0, ..CommandConfig::default() };
     let nodes = [("walk", 1.25), ("idle", 0.0)].map(|(name, speed_mps)| {
         GraphNode::new(name, &with(CommandConfig { speed_mps, ..config.clone() }), 1.0)
     });
@@ -186,7 +187,13 @@ fn an_episode_that_starts_at_a_node_rests_there_or_goes_elsewhere() {
 fn a_stick_turns_by_a_quarter_at_most_unless_any_direction_is_asked_for() {
     let most_turn = |any_direction_share| {
         let target_secs = [DT_SECS, DT_SECS];
-        let config = CommandConfig { stick_share: 1.0, stop_share: 0.0, any_direction_share, target_secs, ..Default::default() };
+        let config = CommandConfig {
+            stick_share: 1.0,
+            stop_share: 0.0,
+            any_direction_share,
+            target_secs,
+            ..Default::default()
+        };
         let graph = TrainingGraph::new(vec![edge().nodes()[0].clone()], vec![vec![0]]);
         let mut rng = Rng::new(8, 1);
         let mut command = Command::start(&config, &graph, false, &mut rng);

@@ -172,8 +172,8 @@ impl Demonstrations {
         let len = source.tracked.len();
         let behind = (ticks * TICK_STRIDE).min(len / 2);
         let around = (0..=2 * behind).step_by(TICK_STRIDE).map(|i| (phase.index + len - behind + i) % len);
-        let best = around
-            .max_by(|a, b| is.reward(&source.tracked[*a]).total_cmp(&is.reward(&source.tracked[*b])));
+        let best =
+            around.max_by(|a, b| is.reward(&source.tracked[*a]).total_cmp(&is.reward(&source.tracked[*b])));
         ClipPhase { index: best.unwrap_or(phase.index), ..phase }
     }
 

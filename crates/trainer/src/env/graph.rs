@@ -192,7 +192,10 @@ impl TrainingGraph {
     /// What counts as a failure.
     #[must_use]
     pub fn termination(&self, position: GraphPosition) -> TerminationRule {
-        TerminationRule::between(self.edges[position.edge].map(|node| self.nodes[node].termination), position.t)
+        TerminationRule::between(
+            self.edges[position.edge].map(|node| self.nodes[node].termination),
+            position.t,
+        )
     }
 
     /// The node that a position is at, if it is not between two.

@@ -52,11 +52,17 @@ fn a_path_of_one_node_is_that_node() {
 
 #[test]
 fn upright_edges_take_another_time_to_a_faster_node_than_to_a_slower_one() {
-    let timed = |name: &str, speed_mps, termination| GraphNode { edge_secs: 1.0, termination, ..node(name, speed_mps) };
+    let timed = |name: &str, speed_mps, termination| GraphNode {
+        edge_secs: 1.0,
+        termination,
+        ..node(name, speed_mps)
+    };
     let up = TerminationRule::Upright(1.0);
-    let nodes = vec![timed("walk", 1.0, up), timed("run", 3.0, up), timed("crawl", 0.3, TerminationRule::Lying)];
+    let nodes =
+        vec![timed("walk", 1.0, up), timed("run", 3.0, up), timed("crawl", 0.3, TerminationRule::Lying)];
     let graph = TrainingGraph::new(nodes, vec![vec![0, 1], vec![0, 2]]);
-    let secs = |path, from, to| graph.edge_secs(graph.position(path, from), graph.position(path, to), [0.6, 0.5]);
+    let secs =
+        |path, from, to| graph.edge_secs(graph.position(path, from), graph.position(path, to), [0.6, 0.5]);
     assert_eq!([secs(0, 0.2, 1.0), secs(0, 0.8, 0.0)], [0.6, 0.5]);
     assert_eq!([secs(1, 0.2, 1.0), secs(1, 0.8, 0.0)], [1.0, 1.0]);
 }

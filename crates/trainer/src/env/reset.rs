@@ -204,8 +204,12 @@ impl Env {
             self.rng.range(-1.6, 1.6),
             self.rng.angle(),
         );
-        pose.qpos[2] =
-            0.7 + f64::from(self.character.model().height_at(self.ground_position.0 as f32, self.ground_position.1 as f32));
+        pose.qpos[2] = 0.7
+            + f64::from(
+                self.character
+                    .model()
+                    .height_at(self.ground_position.0 as f32, self.ground_position.1 as f32),
+            );
         pose.qpos[3..7].copy_from_slice(&[turn.w, turn.x, turn.y, turn.z].map(f64::from));
         pose.qvel.fill(0.0);
         if self.character.set_pose(&pose.qpos, &pose.qvel).is_err() {

@@ -1,7 +1,12 @@
 use super::*;
 
 /// Reward at the origin with these settings.
-fn with(config: &RewardConfig, velocity: Vec2, target: Vec2, [speed_mps, speed_scale_mps]: [f32; 2]) -> RewardTerms {
+fn with(
+    config: &RewardConfig,
+    velocity: Vec2,
+    target: Vec2,
+    [speed_mps, speed_scale_mps]: [f32; 2],
+) -> RewardTerms {
     let state = CharacterState::default();
     target_reward(config, &state, velocity, target, Pace { speed_mps, speed_scale_mps })
 }

@@ -117,7 +117,9 @@ mod tests {
         fast.bodies[4].linear_velocity.x += 4.0;
         assert!(TrackedState::of(&bent).reward(&wanted) < 0.8);
         // One body of fifteen half a metre off is 0.129 m in the root mean square.
-        assert!(TrackedState::of(&bent).exceeds(&wanted, 0.12) && !TrackedState::of(&bent).exceeds(&wanted, 0.14));
+        assert!(
+            TrackedState::of(&bent).exceeds(&wanted, 0.12) && !TrackedState::of(&bent).exceeds(&wanted, 0.14)
+        );
         assert!(TrackedState::of(&fast).reward(&wanted) < 0.95);
     }
 }

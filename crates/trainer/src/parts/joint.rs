@@ -41,8 +41,12 @@ impl Workspace {
             let parent = skill.recipe.parent.as_ref().and_then(index);
             actors.push(Actor::learning(skill.actor, parent));
             let known = Some(skill.discriminator);
-            let learner = DiscriminatorLearner::new(recipe.first().discriminator.clone(), known, seed, 10 + i as u64);
-            scorers.push(NodeDiscriminator { demonstrations: skill.demonstrations, discriminator: Some(learner) });
+            let learner =
+                DiscriminatorLearner::new(recipe.first().discriminator.clone(), known, seed, 10 + i as u64);
+            scorers.push(NodeDiscriminator {
+                demonstrations: skill.demonstrations,
+                discriminator: Some(learner),
+            });
             if skill.recipe.parent.is_none() {
                 root = Some(skill.critic);
             }
@@ -60,7 +64,10 @@ impl Workspace {
             let known = scorers[graph.edges()[edge][1]].discriminator.as_ref().map(|d| d.network.clone());
             let seed = seed.wrapping_add(halfway.len() as u64);
             let learner = DiscriminatorLearner::new(recipe.first().discriminator.clone(), known, seed, 30);
-            scorers.push(NodeDiscriminator { demonstrations: self.halfway_clip(ends)?, discriminator: Some(learner) });
+            scorers.push(NodeDiscriminator {
+                demonstrations: self.halfway_clip(ends)?,
+                discriminator: Some(learner),
+            });
         }
         let sizes = critic_sizes(recipe, graph.context_len());
         let mut rng = Rng::new(seed, 1);

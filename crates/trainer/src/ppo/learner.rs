@@ -21,7 +21,7 @@ pub struct Actor {
     /// True when it stays as it is.
     pub frozen: bool,
     /// Its present learning rate.
-    pub x,
+    pub learning_rate: f32,
 }
 
 impl Actor {
@@ -192,7 +192,8 @@ impl Learner {
     #[must_use]
     pub fn learning_rate(&self) -> f32 {
         let learning = self.actors.iter().filter(|a| !a.frozen);
-        let (sum, count) = learning.fold((0.0, 0.0_f32), |(sum, count), a| (sum + a.learning_rate.ln(), count + 1.0));
+        let (sum, count) =
+            learning.fold((0.0, 0.0_f32), |(sum, count), a| (sum + a.learning_rate.ln(), count + 1.0));
         (sum / count.max(1.0)).exp()
     }
 

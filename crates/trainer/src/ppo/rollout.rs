@@ -134,7 +134,8 @@ impl Rollout {
 
     /// Shifts and scales the advantages to mean 0 and deviation 1; those of deterministic rows, which explore nothing, become 0.
     pub fn normalise_advantages(&mut self) {
-        let tried = || self.advantages.iter().zip(&self.deterministic).filter(|(_, deterministic)| !**deterministic);
+        let tried =
+            || self.advantages.iter().zip(&self.deterministic).filter(|(_, deterministic)| !**deterministic);
         let n = tried().count().max(1) as f64;
         let mean = tried().map(|(a, _)| f64::from(*a)).sum::<f64>() / n;
         let variance = tried().map(|(a, _)| (f64::from(*a) - mean).powi(2)).sum::<f64>() / n;

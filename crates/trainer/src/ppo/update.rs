@@ -70,7 +70,11 @@ impl Learner {
             critic: &self.critic,
             gamma: self.config.gamma,
             action_std: self.config.action_std,
-            behaviour_cloning: if rollout.cloning_targets.is_empty() { 0.0 } else { self.config.behaviour_cloning },
+            behaviour_cloning: if rollout.cloning_targets.is_empty() {
+                0.0
+            } else {
+                self.config.behaviour_cloning
+            },
             scale: 1.0 / minibatch.len() as f32,
         };
         let share = minibatch.len().div_ceil(Lane::COUNT);
@@ -121,7 +125,8 @@ impl Learner {
             } else if kl < config.target_kl / 1.5 {
                 actor.learning_rate *= 1.3;
             }
-            actor.learning_rate = actor.learning_rate.clamp(config.min_learning_rate, config.max_learning_rate);
+            actor.learning_rate =
+                actor.learning_rate.clamp(config.min_learning_rate, config.max_learning_rate);
         }
     }
 }

@@ -38,7 +38,12 @@ impl Recipe {
         let names = "lower-case letters, digits and underscores, at most 64";
         vec![
             (is_plain(&self.skill), "skill", names, self.skill.clone()),
-            (named.clone().all(|n| is_plain(n)), "parent and paths", names, format!("{:?} {:?}", self.parent, self.paths)),
+            (
+                named.clone().all(|n| is_plain(n)),
+                "parent and paths",
+                names,
+                format!("{:?} {:?}", self.parent, self.paths),
+            ),
             (self.clips.iter().all(|c| is_plain(&c.name)), "clips.name", names, format!("{:?}", self.clips)),
             (named.clone().all(|n| *n != self.skill), "parent and paths", "other skills", self.skill.clone()),
             (!self.edge || self.parent.is_some(), "edge", "a parent beside it", "none".into()),
@@ -66,7 +71,12 @@ impl Recipe {
                 "at least two skills in each, none of them twice",
                 format!("{:?}", self.paths),
             ),
-            (self.halfway.iter().all(on_a_path), "halfway", "edges of the paths", format!("{:?}", self.halfway)),
+            (
+                self.halfway.iter().all(on_a_path),
+                "halfway",
+                "edges of the paths",
+                format!("{:?}", self.halfway),
+            ),
             (count(self.phases.len()), "phases", "1 to 256 phases", self.phases.len().to_string()),
         ]
     }
@@ -82,20 +92,19 @@ impl Recipe {
         let hidden = |sizes: &[usize]| (1..=MOST_HIDDEN).contains(&sizes.len());
         let secs = [command.target_secs, command.edge_sweep_secs, command.edge_rest_secs];
         let between = [secs[0], secs[1], secs[2], command.target_metres, env.exploration.deterministic_secs];
-        let same = (env.num_envs, env.horizon, &reset.clips, ppo.minibatch, &ppo.critic_hidden)
-            == {
-                let (env, ppo) = (&first.environment, &first.ppo);
-                (env.num_envs, env.horizon, &env.reset.clips, ppo.minibatch, &ppo.critic_hidden)
-            }
-            && (&discriminator.hidden, discriminator.batch, discriminator.replay_size)
-                == (
-                    &first.discriminator.hidden,
-                    first.discriminator.batch,
-                    first.discriminator.replay_size,
-                );
+        let same = (env.num_envs, env.horizon, &reset.clips, ppo.minibatch, &ppo.critic_hidden) == {
+            let (env, ppo) = (&first.environment, &first.ppo);
+            (env.num_envs, env.horizon, &env.reset.clips, ppo.minibatch, &ppo.critic_hidden)
+        } && (&discriminator.hidden, discriminator.batch, discriminator.replay_size)
+            == (&first.discriminator.hidden, first.discriminator.batch, first.discriminator.replay_size);
         let skill = |e: &crate::env::EnvironmentConfig| e.reset.hand_over.as_ref().map(|h| h.skill.clone());
         vec![
-            (rows <= MOST_ROWS, "environment.num_envs times horizon", "at most 1048576 rows", rows.to_string()),
+            (
+                rows <= MOST_ROWS,
+                "environment.num_envs times horizon",
+                "at most 1048576 rows",
+                rows.to_string(),
+            ),
             (
                 same && skill(env) == skill(&first.environment),
                 "phases",

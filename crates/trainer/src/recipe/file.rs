@@ -114,7 +114,12 @@ pub(super) fn parse(path: &Path, text: &str) -> Result<Recipe, RecipeError> {
         };
         phases.push(Phase {
             samples: phase.samples,
-            environment: section(path, &at("environment", &phase.environment), &environment, &phase.environment)?,
+            environment: section(
+                path,
+                &at("environment", &phase.environment),
+                &environment,
+                &phase.environment,
+            )?,
             ppo: section(path, &at("ppo", &phase.ppo), &ppo, &phase.ppo)?,
             discriminator: section(
                 path,
@@ -128,15 +133,15 @@ pub(super) fn parse(path: &Path, text: &str) -> Result<Recipe, RecipeError> {
     Ok(Recipe { skill, parent, edge, paths, halfway, clips, phases })
 }
 
-/// True for a name that is a plain file name.
-pub(super) fn is_plain(name: &str) -> bool {
+/// True for lower-case letters, digits and underscores, at most 64: names that are safe as file names.
+#[must_use]
+pub fn is_plain(name: &str) -> bool {
     let plain = |c: char| c.is_ascii_lowercase() || c.is_ascii_digit() || c == '_';
     !name.is_empty() && name.len() <= 64 && name.chars().all(plain)
 }
 
 fn from_text<T: DeserializeOwned>(path: &Path, text: &str) -> Result<T, RecipeError> {
-    toml::from_str(text)
-        .map_err(|e| RecipeError::Toml { path: path.to_owned(), message: e.to_string() })
+    toml::from_str(text).map_err(|e| RecipeError::Toml { path: path.to_owned(), message: e.to_string() })
 }
 
 /// A section of the configuration with a phase's table over it.
@@ -146,10 +151,8 @@ fn section<T: DeserializeOwned>(
     base: &Table,
     over: &Table,
 ) -> Result<T, RecipeError> {
-    T::deserialize(Value::Table(overlaid(base, over))).map_err(|e| RecipeError::Toml {
-        path: path.to_owned(),
-        message: format!("{name}: {}", e.message()),
-    })
+    T::deserialize(Value::Table(overlaid(base, over)))
+        .map_err(|e| RecipeError::Toml { path: path.to_owned(), message: format!("{name}: {}", e.message()) })
 }
 
 /// The fields of `base` and `over`; where both have one, that of `over`. Tables are overlaid field by field.

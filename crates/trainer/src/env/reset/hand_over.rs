@@ -35,8 +35,12 @@ impl Env {
             match controller.report().skill_ended {
                 Some((_, SkillEnd::Recognised)) => {
                     self.tracking = None;
-                    self.command =
-                        Command::start_at(&context.config.command, context.graph, hand_over.node, &mut self.rng);
+                    self.command = Command::start_at(
+                        &context.config.command,
+                        context.graph,
+                        hand_over.node,
+                        &mut self.rng,
+                    );
                     let at = (self.root_position(), self.heading().angle());
                     self.command.aim(&context.config.command, context.graph, at, &mut self.rng);
                     return true;

@@ -99,7 +99,12 @@ mod tests {
     }
 
     /// An episode of so many ticks that fails; the tick at which it began.
-    fn fail_after(ticks: u32, character: &mut Character, states: &mut PreFailureStates, rng: &mut Rng) -> u64 {
+    fn fail_after(
+        ticks: u32,
+        character: &mut Character,
+        states: &mut PreFailureStates,
+        rng: &mut Rng,
+    ) -> u64 {
         let began = character.tick();
         states.begin();
         for _ in 0..ticks {
