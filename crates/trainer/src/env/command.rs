@@ -1,16 +1,17 @@
 //! What a character is told to do during an episode: a target that is renewed, and a position on the graph that moves.
 
 use glam::Vec2;
-use policy_core::{RISE_SECONDS, TARGET_RANGE_METRES};
+use physics_bridge::CONTROL_HZ;
+use policy_core::training::{FallDetector, Heights, RISE_SECONDS, TARGET_RANGE_METRES, fall_height};
+use policy_core::{GraphPosition, NodeId, PathId};
 
 use serde::{Deserialize, Serialize};
 
-use super::graph::{GraphPosition, TrainingGraph};
-use super::termination::TerminationRule;
+use super::graph::TrainingGraph;
 use crate::Rng;
 
 /// Seconds of a control tick.
-pub const DT_SECS: f32 = 1.0 / 30.0;
+pub const DT_SECS: f32 = 1.0 / CONTROL_HZ as f32;
 
 /// Numbers of [`Command::intent_into`].
 pub const INTENT_LEN: usize = 2;
@@ -72,7 +73,7 @@ impl Default for CommandConfig {
 const SWEEP_SECS: [f32; 2] = [4.0, 8.0];
 
 /// Target and position on the graph of one character.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Command {
     /// Where to go, world.
     pub target: Vec2,
@@ -80,7 +81,7 @@ pub struct Command {
     pub position: GraphPosition,
     /// True when the target is to be reached and stood at.
     pub stop: bool,
-    path: usize,
+    path: PathId,
     coordinate: f32,
     /// Requested coordinate; the present one follows as fast as the edges allow.
     asked: f32,
@@ -92,11 +93,19 @@ pub struct Command {
     sweeps: bool,
     /// Ticks that a moving coordinate stays where it arrived.
     rest_ticks: u32,
-    /// Ticks that it has been held back until the character stands.
-    rising_ticks: u32,
+    /// Holds it back in a low gait until the character stands.
+    fall: FallDetector,
     target_ticks: u32,
     /// Direction of a stick held by a player, radians; `None` for targets fixed in the world.
     stick: Option<f32>,
+}
+
+impl Default for Command {
+    /// Nowhere to go, at the first node.
+    fn default() -> Self {
+        let (path, node) = (PathId::new(0), NodeId::new(0));
+        Self::resting(path, 0.0, GraphPosition::node(node))
+    }
 }
 
 impl Command {
@@ -104,11 +113,11 @@ impl Command {
     /// a target.
     #[must_use]
     pub fn start(config: &CommandConfig, graph: &TrainingGraph, at_node: bool, rng: &mut Rng) -> Self {
-        let path = rng.index(graph.paths());
+        let path = graph.sample_path(rng);
         if config.stay_at_end {
             return Self::at(graph, path, graph.end(path));
         }
-        let coordinate = if at_node { graph.draw_node(path, rng) } else { graph.draw(path, rng) };
+        let coordinate = if at_node { graph.sample_node(path, rng) } else { graph.sample(path, rng) };
         let mut command = Self::at(graph, path, coordinate);
         // Half of the others move.
         let end = graph.end(path);
@@ -128,9 +137,11 @@ impl Command {
     /// When the node is on no path.
     #[must_use]
     pub fn start_at(config: &CommandConfig, graph: &TrainingGraph, node: usize, rng: &mut Rng) -> Self {
-        let through = (0..graph.paths()).filter(|path| graph.path(*path).contains(&node));
-        let path = through.clone().nth(rng.index(through.count())).expect("an index below the count");
-        let coordinate = graph.path(path).iter().position(|n| *n == node).expect("a path through it") as f32;
+        let coordinates = graph.paths().iter().enumerate().filter_map(|(index, path)| {
+            Some((PathId::new(index), path.coordinate(GraphPosition::node(NodeId::new(node)))?))
+        });
+        let through = rng.index(coordinates.clone().count());
+        let (path, coordinate) = coordinates.clone().nth(through).expect("an index below the count");
         let mut command = Self::at(graph, path, coordinate);
         if rng.chance(0.5) {
             command.go_elsewhere(config, graph, rng);
@@ -139,15 +150,32 @@ impl Command {
     }
 
     /// At rest at a coordinate of a path.
-    fn at(graph: &TrainingGraph, path: usize, coordinate: f32) -> Self {
-        let position = graph.position(path, coordinate);
-        Self { path, coordinate, asked: coordinate, goal: coordinate, position, ..Self::default() }
+    pub(super) fn at(graph: &TrainingGraph, path: PathId, coordinate: f32) -> Self {
+        Self::resting(path, coordinate, graph.position(path, coordinate))
+    }
+
+    fn resting(path: PathId, coordinate: f32, position: GraphPosition) -> Self {
+        Self {
+            target: Vec2::ZERO,
+            position,
+            stop: false,
+            path,
+            coordinate,
+            asked: coordinate,
+            goal: coordinate,
+            rate: 0.0,
+            sweeps: false,
+            rest_ticks: 0,
+            fall: FallDetector::default(),
+            target_ticks: 0,
+            stick: None,
+        }
     }
 
     /// Lets the coordinate go to another one, and from there to others.
     fn go_elsewhere(&mut self, config: &CommandConfig, graph: &TrainingGraph, rng: &mut Rng) {
         self.rate = DT_SECS / rng.range(config.edge_sweep_secs[0], config.edge_sweep_secs[1]);
-        self.goal = graph.draw(self.path, rng);
+        self.goal = graph.sample(self.path, rng);
     }
 
     /// Sets the first target of an episode that starts at `position` with `heading`.
@@ -172,23 +200,23 @@ impl Command {
     /// True when it has been held back for longer than standing up may take.
     #[must_use]
     pub fn stuck(&self) -> bool {
-        self.rising_ticks as f32 * DT_SECS >= RISE_SECONDS
+        self.fall.rising_seconds() >= RISE_SECONDS
     }
 
-    /// True when it has been held back for longer than standing up at ease takes: the command is not followed.
+    /// True when it is held back and the character should have stood up by now: the command is not followed.
     #[must_use]
     pub fn is_late(&self) -> bool {
-        self.rising_ticks as f32 * DT_SECS >= EASY_RISE_SECONDS
+        self.fall.is_late()
     }
 
-    /// Advances by a tick. Leaving a low gait requires standing first, as in a game: the coordinate waits while `low` is true
-    /// for the rule of the next position.
+    /// Advances by a tick, by the game's rules: the position crosses edges no faster than their seconds, and leaving a low gait
+    /// requires standing first.
     pub fn advance(
         &mut self,
         config: &CommandConfig,
         graph: &TrainingGraph,
         root: Vec2,
-        low: impl FnOnce(TerminationRule) -> bool,
+        heights: Heights,
         rng: &mut Rng,
     ) {
         self.target_ticks = self.target_ticks.saturating_sub(1);
@@ -204,22 +232,19 @@ impl Command {
             if self.asked == self.goal && self.rest_ticks == 0 {
                 let secs = rng.range(config.edge_rest_secs[0], config.edge_rest_secs[1]);
                 self.rest_ticks = (secs / DT_SECS) as u32;
-                self.goal = graph.draw(self.path, rng);
+                self.goal = graph.sample(self.path, rng);
                 if rng.chance(config.jump_share) {
                     self.asked = self.goal;
                 }
             }
         }
-        let asked = graph.position(self.path, self.asked);
-        let secs = graph.edge_secs(self.position, asked, config.edge_secs_factors);
-        let most = if secs > 0.0 { DT_SECS / secs } else { f32::INFINITY };
-        let coordinate = self.coordinate + (self.asked - self.coordinate).clamp(-most, most);
-        let position = graph.position(self.path, coordinate);
-        let [from, to] = [self.position, position].map(|position| graph.termination(position));
-        if from.rises_to(to) && low(to) {
-            self.rising_ticks += 1;
-        } else {
-            (self.coordinate, self.position, self.rising_ticks) = (coordinate, position, 0);
+        let (rules, mut next) = (graph.policy_graph(), self.position);
+        rules.travel(&mut next, graph.position(self.path, self.asked), DT_SECS);
+        let limits = [self.position, next].map(|position| fall_height(rules, position));
+        if !self.fall.holds_back(limits, heights, DT_SECS) {
+            self.position = next;
+            let coordinate = graph.paths().get(self.path.index()).and_then(|path| path.coordinate(next));
+            self.coordinate = coordinate.unwrap_or(self.coordinate);
         }
         self.follow_stick(graph, root);
     }
@@ -248,7 +273,7 @@ impl Command {
     /// near as the stick is pushed little.
     fn follow_stick(&mut self, graph: &TrainingGraph, position: Vec2) {
         let Some(direction) = self.stick else { return };
-        let begins_standing = graph.nodes()[graph.path(self.path)[0]].speed_mps == 0.0;
+        let begins_standing = graph.speed_mps(graph.position(self.path, 0.0)) == 0.0;
         let push = match (self.stop, begins_standing && graph.end(self.path) > 0.0) {
             (true, _) => 0.0,
             (false, true) => self.asked.min(1.0),
@@ -257,9 +282,6 @@ impl Command {
         self.target = position + push * TARGET_RANGE_METRES * Vec2::from_angle(direction);
     }
 }
-
-/// Seconds that standing up takes at ease.
-const EASY_RISE_SECONDS: f32 = 1.0;
 
 const QUARTER: f32 = std::f32::consts::FRAC_PI_2;
 

@@ -2,22 +2,20 @@
 //! discriminator frames and states for reference-state initialisation.
 
 use physics_bridge::{Model, Pose};
-use policy_core::{
-    CharacterState, DISCRIMINATOR_INPUT_LEN, DOF_COUNT, FRAME_AGES, FRAME_LEN, HISTORY_LEN, Normaliser,
-    discriminator_frame_into,
-};
+use policy_core::{CharacterState, JointActuation};
+use policy_core::training::{FRAME_AGES, HISTORY_LEN, Normaliser, discriminator_frame_into};
 
 use super::fitted::{Fitted, SourceError, fit};
 use super::tracking::TrackedState;
 use crate::Rng;
-use crate::clip::{Clip, Motion, TICK_STRIDE};
+use crate::clip::{Clip, MOTION_HZ, Motion, TICK_STRIDE};
 
 /// One fitted clip with the frames a discriminator sees.
 #[derive(Clone, Debug)]
 struct Source {
     motion: Motion,
-    /// Normalised frames, one for each pose.
-    frames: Vec<[f32; FRAME_LEN]>,
+    /// Normalised frames, `[poses][frame]`.
+    frames: Vec<f32>,
     /// What tracking compares with, one for each pose.
     tracked: Vec<TrackedState>,
     /// Index of the source that is its mirror image; its own when it is taken one way round only.
@@ -25,9 +23,6 @@ struct Source {
     /// Share of this clip when one is drawn.
     share: f32,
 }
-
-/// Poses that motors lag behind: 0.1 s, damping over gain of every joint of the humanoid, and half a tick.
-const AHEAD: usize = 14;
 
 /// A phase of a clip.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -41,8 +36,8 @@ pub struct ClipPhase {
 pub struct ReferenceState {
     /// Pose and velocity; horizontal position and heading are the clip's.
     pub pose: Pose,
-    /// Normalised frames, oldest first, the last one that of the pose.
-    pub frames: Box<[[f32; FRAME_LEN]; HISTORY_LEN]>,
+    /// Normalised frames, `[ticks][frame]`, oldest first, the last one that of the pose.
+    pub frames: Vec<f32>,
     /// Its phase.
     pub phase: ClipPhase,
 }
@@ -52,6 +47,9 @@ pub struct ReferenceState {
 pub struct Demonstrations {
     sources: Vec<Source>,
     shares: f32,
+    frame_len: usize,
+    /// Poses that the motor of each joint lags behind: damping over gain, and half a tick.
+    lags: Vec<usize>,
 }
 
 impl Demonstrations {
@@ -64,6 +62,7 @@ impl Demonstrations {
         model: &Model,
         normaliser: &Normaliser,
     ) -> Result<Self, SourceError> {
+        let frame_len = model.skeleton().frame_len();
         let mut sources = Vec::new();
         for (clip, share, mirrored) in clips {
             let both = [Some(clip.clone()), mirrored.then(|| clip.mirrored())];
@@ -71,19 +70,24 @@ impl Demonstrations {
             for (way, clip) in both.into_iter().flatten().enumerate() {
                 let Fitted { motion, states, .. } = fit(&clip, model)?;
                 let frame = |state: &CharacterState| {
-                    let mut frame = [0.0; FRAME_LEN];
-                    discriminator_frame_into(state, &mut frame);
+                    let mut frame = vec![0.0; frame_len];
+                    discriminator_frame_into(model.skeleton(), state, &mut frame);
                     normaliser.normalise_in_place(&mut frame);
                     frame
                 };
-                let frames = states.iter().map(frame).collect();
+                let frames = states.iter().flat_map(frame).collect();
                 let tracked = states.iter().map(TrackedState::of).collect();
                 let mirror = first + (way + 1) % ways;
                 sources.push(Source { motion, frames, tracked, mirror, share: share / ways as f32 });
             }
         }
         let shares = sources.iter().map(|s| s.share).sum();
-        Ok(Self { sources, shares })
+        let half_a_tick = 0.5 / model.control_hz();
+        let lag = |joint: &JointActuation| {
+            ((joint.damping / joint.gain + half_a_tick) * MOTION_HZ).round() as usize
+        };
+        let lags = model.actuation().joints.iter().map(lag).collect();
+        Ok(Self { sources, shares, frame_len, lags })
     }
 
     /// The fitted clips.
@@ -130,14 +134,20 @@ impl Demonstrations {
         self.sources[phase.source].motion.looping
     }
 
-    /// Joint angles that motors without lag would need now to be at the clip's pose a tick later: those of the pose that lies
-    /// ahead by the time constant of the joints, damping over gain, and half a tick.
-    #[must_use]
-    pub fn ahead(&self, phase: ClipPhase) -> [f32; DOF_COUNT] {
+    /// Writes the joint angles that motors without lag would need now to be at the clip's pose a tick later: those of the pose
+    /// that lies ahead by the time constant of each joint, damping over gain, and half a tick.
+    ///
+    /// # Panics
+    /// When `out` has not one number for each joint.
+    pub fn ahead_into(&self, phase: ClipPhase, out: &mut [f32]) {
+        assert_eq!(out.len(), self.lags.len(), "one angle for each joint");
         let motion = &self.sources[phase.source].motion;
-        let (index, len) = (phase.index + AHEAD, motion.poses.len());
-        let pose = &motion.poses[if motion.looping { index % len } else { index.min(len - 1) }];
-        std::array::from_fn(|joint| pose.qpos[7 + joint] as f32)
+        let len = motion.poses.len();
+        for (joint, (out, lag)) in out.iter_mut().zip(&self.lags).enumerate() {
+            let index = phase.index + lag;
+            let pose = &motion.poses[if motion.looping { index % len } else { index.min(len - 1) }];
+            *out = pose.qpos[7 + joint] as f32;
+        }
     }
 
     /// What tracking compares with at a phase.
@@ -178,11 +188,15 @@ impl Demonstrations {
     }
 
     /// Samples a phase of a clip and writes the discriminator's input there.
-    pub fn sample_into(&self, rng: &mut Rng, out: &mut [f32; DISCRIMINATOR_INPUT_LEN]) {
+    ///
+    /// # Panics
+    /// When `out` has not room for one frame of each age exactly.
+    pub fn sample_into(&self, rng: &mut Rng, out: &mut [f32]) {
+        assert_eq!(out.len(), self.frame_len * FRAME_AGES.len(), "inputs of a discriminator");
         let ClipPhase { source, index } = self.sample_phase(rng);
         let source = &self.sources[source];
-        for (chunk, age) in out.chunks_exact_mut(FRAME_LEN).zip(FRAME_AGES) {
-            chunk.copy_from_slice(&source.frames[source.motion.earlier(index, age)]);
+        for (chunk, age) in out.chunks_exact_mut(self.frame_len).zip(FRAME_AGES) {
+            chunk.copy_from_slice(self.frame(source, source.motion.earlier(index, age)));
         }
     }
 
@@ -191,11 +205,13 @@ impl Demonstrations {
     pub fn sample_reference_state(&self, rng: &mut Rng) -> ReferenceState {
         let phase = self.sample_phase(rng);
         let (source, index) = (&self.sources[phase.source], phase.index);
-        let mut frames = Box::new([[0.0; FRAME_LEN]; HISTORY_LEN]);
-        for (age, frame) in frames.iter_mut().rev().enumerate() {
-            *frame = source.frames[source.motion.earlier(index, age)];
-        }
-        ReferenceState { pose: source.motion.poses[index], frames, phase }
+        let ages = (0..HISTORY_LEN).rev();
+        let frames = ages.flat_map(|age| self.frame(source, source.motion.earlier(index, age)));
+        ReferenceState { pose: source.motion.poses[index].clone(), frames: frames.copied().collect(), phase }
+    }
+
+    fn frame<'a>(&self, source: &'a Source, index: usize) -> &'a [f32] {
+        &source.frames[index * self.frame_len..(index + 1) * self.frame_len]
     }
 }
 
@@ -204,10 +220,9 @@ mod tests {
     use std::path::Path;
 
     use glam::Quat;
-    use policy_core::Body;
 
     use super::*;
-    use crate::clip::tests::still;
+    use crate::clip::tests::{body, still};
 
     #[test]
     fn the_nearest_moment_is_that_of_the_same_pose() {
@@ -215,9 +230,9 @@ mod tests {
         let model = Model::load(path).unwrap();
         let mut clip = still(31);
         for (i, rotations) in clip.local_rotations.iter_mut().enumerate() {
-            rotations[Body::Torso.index()] = Quat::from_rotation_y(0.04 * i as f32);
+            rotations[body("torso")] = Quat::from_rotation_y(0.04 * i as f32);
         }
-        let plain = Normaliser::from_mean_and_deviation(&[0.0; FRAME_LEN], &[1.0; FRAME_LEN]).unwrap();
+        let plain = Normaliser::from_mean_and_deviation(&[0.0; 125], &[1.0; 125]).unwrap();
         let clips = Demonstrations::from_clips(&[(clip, 1.0, false)], &model, &plain).unwrap();
         for index in [0, 5 * TICK_STRIDE, 20 * TICK_STRIDE] {
             let phase = ClipPhase { source: 0, index };
@@ -228,6 +243,8 @@ mod tests {
             if index > 0 {
                 assert_ne!(clips.nearest_around(before, 2, clips.tracked_at(phase)), phase);
             }
+            // Damping over gain is 0.1 s for every joint of the humanoid: 12 poses, and half a tick.
+            assert!(clips.lags.iter().all(|lag| *lag == 14));
             assert_eq!(clips.after(phase), Some(ClipPhase { source: 0, index: index + TICK_STRIDE }));
         }
     }

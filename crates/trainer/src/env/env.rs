@@ -3,10 +3,8 @@
 
 use glam::Vec2;
 use physics_bridge::{Character, Model};
-use policy_core::{
-    ActionScaling, Body, CharacterState, DISCRIMINATOR_INPUT_LEN, DOF_COUNT, FrameHistory, Heading,
-    JointTargets, discriminator_frame_into,
-};
+use policy_core::training::{ActionScaling, FrameHistory, Heights, discriminator_frame_into};
+use policy_core::{BodyId, CharacterState, Heading, JointTargets, Skeleton};
 
 use super::command::{Command, DT_SECS};
 use super::config::EnvironmentConfig;
@@ -16,7 +14,7 @@ use super::graph::TrainingGraph;
 use super::normalisers::Normalisers;
 use super::reset::{HandOver, PreFailureStates};
 use super::reward::{Pace, RewardTerms, Task, foot_slip_mps, standing_reward, target_reward};
-use super::termination::{TerminationHeights, TerminationRule};
+use super::termination::TerminationHeights;
 use super::track_clip::Tracking;
 use crate::Rng;
 use crate::ppo::Done;
@@ -26,6 +24,8 @@ use crate::ppo::Done;
 pub struct EnvContext<'a> {
     /// Settings.
     pub config: &'a EnvironmentConfig,
+    /// The character's bodies and joints.
+    pub skeleton: &'a Skeleton,
     /// What characters move along.
     pub graph: &'a TrainingGraph,
     /// Clips of the graph's nodes.
@@ -38,6 +38,8 @@ pub struct EnvContext<'a> {
     pub normalisers: &'a Normalisers,
     /// Heights that tell standing from lying.
     pub heights: &'a TerminationHeights,
+    /// Bodies that are pushed.
+    pub pushed: &'a [BodyId],
 }
 
 /// A finished episode.
@@ -76,8 +78,10 @@ pub struct Env {
     pub(super) stood_ticks: u32,
     /// True when actions arrive one tick late in this episode.
     pub(super) delayed: bool,
-    /// Targets of the last action, which a delayed character gets now.
-    pub(super) late_targets: Option<JointTargets>,
+    /// Targets of the last action, which a delayed character gets now; those of the action before.
+    pub(super) targets: [JointTargets; 2],
+    /// True once the episode has targets of an action before.
+    pub(super) has_late_targets: bool,
 }
 
 /// Ticks after which a character counts as one that has stood.
@@ -90,11 +94,13 @@ impl Env {
     /// An environment with its own random numbers; [`Env::reset`] starts its first episode.
     #[must_use]
     pub fn new(model: &Model, rng: Rng) -> Self {
+        let skeleton = model.skeleton();
+        let targets = JointTargets::new(skeleton);
         Self {
             character: Character::new(model),
-            state: CharacterState::default(),
+            state: CharacterState::new(skeleton),
             command: Command::default(),
-            history: FrameHistory::default(),
+            history: FrameHistory::new(skeleton.frame_len()),
             rng,
             age: 0,
             born_at: 0,
@@ -106,34 +112,38 @@ impl Env {
             exploration: Exploration::default(),
             stood_ticks: 0,
             delayed: false,
-            late_targets: None,
+            targets: [targets.clone(), targets],
+            has_late_targets: false,
         }
     }
 
     pub(super) fn push_frame(&mut self, context: &EnvContext<'_>) {
         let slot = self.history.push();
-        discriminator_frame_into(&self.state, slot);
+        discriminator_frame_into(context.skeleton, &self.state, slot);
         context.normalisers.frame.normalise_in_place(slot);
     }
 
     /// Horizontal position of the root, metres.
     #[must_use]
     pub fn root_position(&self) -> Vec2 {
-        self.state.body(Body::Pelvis).position.truncate()
+        self.state.root().position.truncate()
     }
 
     pub(super) fn heading(&self) -> Heading {
-        Heading::from_rotation(self.state.body(Body::Pelvis).rotation)
+        Heading::from_rotation(self.state.root().rotation)
     }
 
     /// Acts for one tick and writes the discriminator's input afterwards. Returns what the tick was worth and how it ended.
     /// The caller resets the environment when the episode ended.
+    ///
+    /// # Panics
+    /// When the lengths of action or input are not those of the skeleton.
     pub fn step(
         &mut self,
         context: &EnvContext<'_>,
         scaling: &ActionScaling,
-        action: &[f32; DOF_COUNT],
-        discriminator_input: &mut [f32; DISCRIMINATOR_INPUT_LEN],
+        action: &[f32],
+        discriminator_input: &mut [f32],
     ) -> (RewardTerms, Done) {
         let config = context.config;
         let before = self.root_position();
@@ -165,14 +175,14 @@ impl Env {
     }
 
     /// Actuates and steps; true when the physics diverged.
-    fn act(&mut self, context: &EnvContext<'_>, scaling: &ActionScaling, action: &[f32; DOF_COUNT]) -> bool {
-        let mut targets = JointTargets::default();
-        scaling.targets_into(action, &mut targets);
-        if self.delayed {
-            targets = self.late_targets.replace(targets).unwrap_or(targets);
-        }
-        self.character.actuate(&targets);
-        self.push(&context.config.randomisation);
+    fn act(&mut self, context: &EnvContext<'_>, scaling: &ActionScaling, action: &[f32]) -> bool {
+        let [now, before] = &mut self.targets;
+        std::mem::swap(now, before);
+        scaling.targets_into(action, now);
+        let late = self.delayed && self.has_late_targets;
+        self.character.actuate(if late { before } else { now });
+        self.has_late_targets = true;
+        self.push(context);
         self.character.step().is_err()
     }
 
@@ -186,21 +196,21 @@ impl Env {
             Task::Target if self.command.is_late() => RewardTerms::default(),
             Task::Target => target_reward(config, &self.state, velocity, self.command.target, pace)
                 .with_height(&self.state, height),
-            Task::Stand => standing_reward(config, &self.state),
+            Task::Stand => standing_reward(config, context.skeleton, &self.state),
         };
         if config.foot_slip_cost == 0.0 || !graph.termination(position).is_upright() {
             return terms;
         }
         let weight = self.character.model().mass_kg() as f32 * GRAVITY;
-        let foot_slip_mps = foot_slip_mps(&self.state, self.character.contacts(), weight);
+        let foot_slip_mps = foot_slip_mps(context.skeleton.feet(), &self.state, self.character.contacts(), weight);
         RewardTerms { foot_slip_mps, ..terms }
     }
 
     /// Renews target and position on the graph, after the tick's reward.
     pub fn advance_command(&mut self, context: &EnvContext<'_>) {
         let root = self.root_position();
-        let low = |rule: TerminationRule| rule.is_broken_by(context.heights, &self.state, true);
-        self.command.advance(&context.config.command, context.graph, root, low, &mut self.rng);
+        let heights = Heights::of(context.skeleton, &self.state);
+        self.command.advance(&context.config.command, context.graph, root, heights, &mut self.rng);
         self.exploration.tick(&context.config.exploration, &mut self.rng);
     }
 

@@ -1,11 +1,14 @@
-//! The part of the policy graph that a run trains: nodes, each with a policy of its own, and paths through them.
+//! The part of the policy graph that a run trains: policy-core's graph, and for each node what training needs beside.
 
-use super::command::INTENT_LEN;
+use policy_core::training::{GraphError, Layer, Node, Path};
+use policy_core::{GraphPosition, Mlp, NodeId, PathId, PolicyGraph};
+
+use super::command::{DT_SECS, INTENT_LEN};
 use super::config::EnvironmentConfig;
 use super::termination::TerminationRule;
 use crate::Rng;
 
-/// A node of a graph.
+/// A node as training sees it.
 #[derive(Clone, Debug, PartialEq)]
 pub struct GraphNode {
     /// Name of its skill.
@@ -18,6 +21,8 @@ pub struct GraphNode {
     pub max_tracking_error_metres: f32,
     /// What counts as a failure at it.
     pub termination: TerminationRule,
+    /// Root height below which a game's character has fallen there, metres; `None` where no height is a fall.
+    pub fall_height: Option<f32>,
     /// How often episodes rest at it, relative to the other nodes of a path.
     pub share: f32,
     /// Factor on the weight of the task reward.
@@ -32,12 +37,18 @@ impl GraphNode {
     /// The node of a skill with these settings.
     #[must_use]
     pub fn new(name: &str, config: &EnvironmentConfig, share: f32) -> Self {
+        let termination = TerminationRule::of(&config.termination);
         Self {
             name: name.into(),
             speed_mps: config.command.speed_mps,
             speed_scale_mps: config.reward.speed_scale_mps,
             max_tracking_error_metres: config.termination.max_tracking_error_metres,
-            termination: TerminationRule::of(&config.termination),
+            termination,
+            fall_height: match termination {
+                TerminationRule::Upright(_) => Some(config.termination.fall_metres),
+                TerminationRule::Lying => Some(config.termination.lying_metres),
+                TerminationRule::Again | TerminationRule::Never => None,
+            },
             share,
             task: 1.0,
             root_metres: 0.0,
@@ -47,42 +58,60 @@ impl GraphNode {
 }
 
 /// Nodes, paths and the edges under them.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug)]
 pub struct TrainingGraph {
+    graph: PolicyGraph,
     nodes: Vec<GraphNode>,
-    paths: Vec<Vec<usize>>,
-    edges: Vec<[usize; 2]>,
-}
-
-/// A position on the graph.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct GraphPosition {
-    /// Index of the edge.
-    pub edge: usize,
-    /// Blend weight: 0 at the edge's first node, 1 at its second.
-    pub t: f32,
+    /// Nodes that are trained alone, or the ends of each edge: the pairs of policies that rows act between.
+    pairs: Vec<[usize; 2]>,
+    /// The node of a run without a path.
+    lone: Option<NodeId>,
 }
 
 impl TrainingGraph {
-    /// The graph of these paths. A path of one node is that node alone.
+    /// A node that is trained alone, beside nodes that nothing acts as.
+    ///
+    /// # Errors
+    /// When a node has a number that no graph can have.
     ///
     /// # Panics
-    /// When there is no path, a path is empty, or names a node that is not there.
-    #[must_use]
-    pub fn new(nodes: Vec<GraphNode>, paths: Vec<Vec<usize>>) -> Self {
-        assert!(!paths.is_empty(), "a graph has a path");
-        assert!(paths.iter().flatten().all(|n| *n < nodes.len()), "nodes of the paths");
-        let mut edges: Vec<[usize; 2]> = Vec::new();
-        for path in &paths {
-            let alone = [path[0], *path.last().expect("a path has nodes")];
-            let joined = path.windows(2).map(|p| [p[0], p[1]]);
-            for edge in joined.chain((path.len() == 1).then_some(alone)) {
-                if !edges.contains(&edge) {
-                    edges.push(edge);
-                }
+    /// When there is no such node.
+    pub fn alone(nodes: Vec<GraphNode>, node: usize) -> Result<Self, GraphError> {
+        assert!(node < nodes.len(), "the node that is trained");
+        let graph = policy_graph(&nodes, &[], Vec::new(), [1.0; 2])?;
+        Ok(Self { graph, nodes, pairs: vec![[node, node]], lone: Some(NodeId::new(node)) })
+    }
+
+    /// The graph of these paths. The factors on the seconds of edges, to a faster node and to a slower one, count where both
+    /// ends are fully upright.
+    ///
+    /// # Errors
+    /// When there is no path, or one has fewer than two nodes, a node twice in a row, or a node that is not there.
+    pub fn along(
+        nodes: Vec<GraphNode>,
+        paths: &[Vec<usize>],
+        factors: [f32; 2],
+    ) -> Result<Self, GraphError> {
+        let mut pairs: Vec<[usize; 2]> = Vec::new();
+        for pair in paths.iter().flat_map(|path| path.windows(2)).map(|pair| [pair[0], pair[1]]) {
+            if !pairs.contains(&pair) && !pairs.contains(&[pair[1], pair[0]]) {
+                pairs.push(pair);
             }
         }
-        Self { nodes, paths, edges }
+        if paths.is_empty() || pairs.iter().flatten().any(|node| *node >= nodes.len()) {
+            return Err(GraphError::Path { path: "0".into(), from: 0, to: None });
+        }
+        let named = paths.iter().enumerate().map(|(index, path)| {
+            (index.to_string(), path.iter().map(|node| NodeId::new(*node)).collect())
+        });
+        let graph = policy_graph(&nodes, &pairs, named.collect(), factors)?;
+        Ok(Self { graph, nodes, pairs, lone: None })
+    }
+
+    /// policy-core's graph, by which positions move.
+    #[must_use]
+    pub fn policy_graph(&self) -> &PolicyGraph {
+        &self.graph
     }
 
     /// Nodes, by index.
@@ -91,7 +120,7 @@ impl TrainingGraph {
         &self.nodes
     }
 
-    /// Replaces a node's settings.
+    /// Replaces what training knows of a node. Name, fall height and seconds of its edges stay as they are.
     ///
     /// # Panics
     /// When there is no such node.
@@ -99,59 +128,72 @@ impl TrainingGraph {
         self.nodes[index] = node;
     }
 
-    /// Edges, by index.
+    /// Pairs of policies that rows act between, by index: the ends of each edge, or one node twice.
     #[must_use]
-    pub fn edges(&self) -> &[[usize; 2]] {
-        &self.edges
+    pub fn pairs(&self) -> &[[usize; 2]] {
+        &self.pairs
     }
 
-    /// Nodes of a path.
-    ///
-    /// # Panics
-    /// When there is no such path.
+    /// Paths; none for a node that is trained alone.
     #[must_use]
-    pub fn path(&self, path: usize) -> &[usize] {
-        &self.paths[path]
+    pub fn paths(&self) -> &[Path] {
+        self.graph.paths()
     }
 
-    /// Number of paths.
+    /// Where an episode of this path starts that has coordinate `coordinate`.
     #[must_use]
-    pub fn paths(&self) -> usize {
-        self.paths.len()
+    pub fn position(&self, path: PathId, coordinate: f32) -> GraphPosition {
+        match self.lone {
+            Some(node) => GraphPosition::node(node),
+            None => self.graph.path(path).position(coordinate),
+        }
     }
 
     /// Greatest coordinate of a path.
     #[must_use]
-    pub fn end(&self, path: usize) -> f32 {
-        (self.paths[path].len() - 1) as f32
+    pub fn end(&self, path: PathId) -> f32 {
+        if self.lone.is_some() { 0.0 } else { self.graph.path(path).end() }
     }
 
-    /// The position of a coordinate of a path, clamped to it.
-    #[must_use]
-    pub fn position(&self, path: usize, coordinate: f32) -> GraphPosition {
-        let nodes = &self.paths[path];
-        let segment = (coordinate.max(0.0) as usize).min(nodes.len().saturating_sub(2));
-        let ends = [nodes[segment], nodes[(segment + 1).min(nodes.len() - 1)]];
-        let edge = self.edges.iter().position(|e| *e == ends).unwrap_or_default();
-        let t = if ends[0] == ends[1] { 1.0 } else { (coordinate - segment as f32).clamp(0.0, 1.0) };
-        GraphPosition { edge, t }
+    /// A random path.
+    pub fn sample_path(&self, rng: &mut Rng) -> PathId {
+        PathId::new(rng.index(self.graph.paths().len().max(1)))
     }
 
     /// A random coordinate of a path: half of them at a node, by the nodes' shares, half anywhere.
-    pub fn draw(&self, path: usize, rng: &mut Rng) -> f32 {
-        if rng.chance(0.5) { rng.uniform() * self.end(path) } else { self.draw_node(path, rng) }
+    pub fn sample(&self, path: PathId, rng: &mut Rng) -> f32 {
+        if rng.chance(0.5) { rng.uniform() * self.end(path) } else { self.sample_node(path, rng) }
     }
 
     /// The coordinate of a random node of a path, by the nodes' shares.
-    pub fn draw_node(&self, path: usize, rng: &mut Rng) -> f32 {
-        let nodes = &self.paths[path];
-        let total: f32 = nodes.iter().map(|n| self.nodes[*n].share).sum();
-        let mut left = rng.uniform() * total;
-        let drawn = nodes.iter().position(|n| {
-            left -= self.nodes[*n].share;
+    pub fn sample_node(&self, path: PathId, rng: &mut Rng) -> f32 {
+        let Some(nodes) = self.graph.paths().get(path.index()).map(Path::nodes) else { return 0.0 };
+        let share = |node: &NodeId| self.nodes[node.index()].share;
+        let mut left = rng.uniform() * nodes.iter().map(share).sum::<f32>();
+        let drawn = nodes.iter().position(|node| {
+            left -= share(node);
             left < 0.0
         });
         drawn.unwrap_or(nodes.len() - 1) as f32
+    }
+
+    /// Index of the pair that acts at a position, and the blend weight of its second policy.
+    #[must_use]
+    pub fn pair_and_blend(&self, position: GraphPosition) -> (usize, f32) {
+        let along = |[from, to]: [usize; 2]| position.along(NodeId::new(from), NodeId::new(to));
+        let found = self.pairs.iter().enumerate().find_map(|(index, pair)| Some((index, along(*pair)?)));
+        // Alone, the node is both ends; its policy is the second one.
+        found.map_or((0, 1.0), |(index, t)| (index, if self.lone.is_some() { 1.0 } else { t }))
+    }
+
+    /// The position at which a pair acts with a blend weight.
+    ///
+    /// # Panics
+    /// When there is no such pair.
+    #[must_use]
+    pub fn position_of(&self, pair: usize, t: f32) -> GraphPosition {
+        let [from, to] = self.pairs[pair].map(NodeId::new);
+        GraphPosition { from, to, t }
     }
 
     /// Commanded speed, metres per second.
@@ -160,7 +202,7 @@ impl TrainingGraph {
         self.between(position, |node| node.speed_mps)
     }
 
-    /// Least width of the reward for the speed, metres per second.
+    /// Least scale of the reward for the speed, metres per second.
     #[must_use]
     pub fn speed_scale_mps(&self, position: GraphPosition) -> f32 {
         self.between(position, |node| node.speed_scale_mps)
@@ -172,17 +214,6 @@ impl TrainingGraph {
         self.between(position, |node| node.root_metres)
     }
 
-    /// Least seconds to cross the edge towards `asked`, 0 for no limit. The factors, to a faster position and to a slower
-    /// one, count where both ends are fully upright.
-    #[must_use]
-    pub fn edge_secs(&self, position: GraphPosition, asked: GraphPosition, factors: [f32; 2]) -> f32 {
-        let ends = self.edges[position.edge].map(|node| &self.nodes[node]);
-        let secs = ends[0].edge_secs.max(ends[1].edge_secs);
-        let upright = ends.iter().all(|node| node.termination == TerminationRule::Upright(1.0));
-        let slower = self.speed_mps(asked) <= self.speed_mps(position);
-        if upright { secs * factors[usize::from(slower)] } else { secs }
-    }
-
     /// Factor on the weight of the task reward.
     #[must_use]
     pub fn task(&self, position: GraphPosition) -> f32 {
@@ -192,35 +223,19 @@ impl TrainingGraph {
     /// What counts as a failure.
     #[must_use]
     pub fn termination(&self, position: GraphPosition) -> TerminationRule {
-        TerminationRule::between(
-            self.edges[position.edge].map(|node| self.nodes[node].termination),
-            position.t,
-        )
-    }
-
-    /// The node that a position is at, if it is not between two.
-    #[must_use]
-    pub fn node_at(&self, position: GraphPosition) -> Option<usize> {
-        let end = [0.0, 1.0].iter().position(|t| *t == position.t)?;
-        Some(self.edges[position.edge][end])
-    }
-
-    /// The node that weighs most.
-    #[must_use]
-    pub fn nearest(&self, position: GraphPosition) -> usize {
-        self.edges[position.edge][usize::from(position.t >= 0.5)]
+        let ends = [position.from, position.to].map(|node| self.nodes[node.index()].termination);
+        TerminationRule::between(ends, position.t)
     }
 
     /// Blend weight of a node.
     #[must_use]
     pub fn weight(&self, position: GraphPosition, node: usize) -> f32 {
-        let [from, to] = self.edges[position.edge];
-        let part = |end: usize, weight: f32| if end == node { weight } else { 0.0 };
-        if from == to { part(to, 1.0) } else { part(from, 1.0 - position.t) + part(to, position.t) }
+        let part = |end: NodeId, weight: f32| if end.index() == node { weight } else { 0.0 };
+        part(position.from, 1.0 - position.t) + part(position.to, position.t)
     }
 
     fn between(&self, position: GraphPosition, of: impl Fn(&GraphNode) -> f32) -> f32 {
-        let [from, to] = self.edges[position.edge].map(|node| of(&self.nodes[node]));
+        let [from, to] = [position.from, position.to].map(|node| of(&self.nodes[node.index()]));
         from + position.t * (to - from)
     }
 
@@ -234,16 +249,50 @@ impl TrainingGraph {
     /// whether a clip is tracked there.
     #[must_use]
     pub fn context_len(&self) -> usize {
-        self.position_len() + if self.edges.len() > 1 { INTENT_LEN + 1 } else { 0 }
+        self.position_len() + if self.pairs.len() > 1 { INTENT_LEN + 1 } else { 0 }
     }
 
     /// Writes the numbers of [`TrainingGraph::position_len`].
     pub fn position_into(&self, position: GraphPosition, out: &mut [f32]) {
         match out {
-            [one] => *one = position.t,
+            [one] => *one = self.pair_and_blend(position).1,
             weights => weights.iter_mut().enumerate().for_each(|(i, w)| *w = self.weight(position, i)),
         }
     }
+}
+
+/// policy-core's graph of nodes, edges and paths. The policies only give the costs of ways, which here are hops.
+fn policy_graph(
+    nodes: &[GraphNode],
+    pairs: &[[usize; 2]],
+    paths: Vec<(String, Vec<NodeId>)>,
+    factors: [f32; 2],
+) -> Result<PolicyGraph, GraphError> {
+    let layer = Layer::from_input_major(1, 1, &[0.0], &[0.0]).expect("one zero is a layer");
+    let policy = Mlp::from_layers(vec![layer]).expect("one layer is a network");
+    let edges: Vec<_> = pairs
+        .iter()
+        .map(|pair| (pair.map(NodeId::new), edge_seconds(pair.map(|node| &nodes[node]), factors)))
+        .collect();
+    let known = |node: &GraphNode| Node {
+        name: node.name.clone(),
+        fall_height: node.fall_height,
+        speed_mps: Some(node.speed_mps),
+    };
+    let policies = vec![policy; nodes.len()];
+    PolicyGraph::from_parts(nodes.iter().map(known).collect(), &edges, paths, &policies)
+}
+
+/// Seconds from the first node to the second and back; at least a tick.
+fn edge_seconds([from, to]: [&GraphNode; 2], [faster, slower]: [f32; 2]) -> [f32; 2] {
+    let secs = from.edge_secs.max(to.edge_secs);
+    let upright = [from, to].iter().all(|node| node.termination == TerminationRule::Upright(1.0));
+    let factors = match (upright, to.speed_mps > from.speed_mps) {
+        (true, true) => [faster, slower],
+        (true, false) => [slower, faster],
+        (false, _) => [1.0; 2],
+    };
+    factors.map(|factor| (secs * factor).max(DT_SECS))
 }
 
 #[cfg(test)]

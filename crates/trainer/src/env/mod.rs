@@ -28,7 +28,7 @@ pub use demonstrations::{ClipPhase, Demonstrations, ReferenceState};
 pub use env::{Env, EnvContext, Episode};
 pub use exploration::ExplorationConfig;
 pub use fitted::{Fitted, SourceError, fit};
-pub use graph::{GraphNode, GraphPosition, TrainingGraph};
+pub use graph::{GraphNode, TrainingGraph};
 pub use normalisers::Normalisers;
 pub use randomisation::{PUSH_SECS, RandomisationConfig};
 pub use reset::{HandOver, HandOverConfig, ResetConfig};

@@ -1,7 +1,7 @@
 //! What policies and critic see. The policy's input is policy-core's; the critic also sees the position on the graph, where it
 //! is going and whether a clip is tracked.
 
-use policy_core::{OBSERVATION_LEN, POLICY_INPUT_LEN, observe_into, target_input};
+use policy_core::{observe_into, target_input};
 
 use super::command::INTENT_LEN;
 use super::env::{Env, EnvContext};
@@ -10,22 +10,20 @@ impl EnvContext<'_> {
     /// Inputs of the critic: the policy's and those of [`TrainingGraph::context_len`](super::TrainingGraph::context_len).
     #[must_use]
     pub fn critic_inputs(&self) -> usize {
-        POLICY_INPUT_LEN + self.graph.context_len()
+        self.skeleton.policy_input_len() + self.graph.context_len()
     }
 }
 
 impl Env {
-    /// Writes the critic's input. Its first [`POLICY_INPUT_LEN`] numbers are the policy's: the normalised observation and the
-    /// target.
+    /// Writes the critic's input. It begins with the policy's: the normalised observation and the target.
     ///
     /// # Panics
     /// When `out` is not [`EnvContext::critic_inputs`] long.
     pub fn observe_into(&self, context: &EnvContext<'_>, out: &mut [f32]) {
         assert_eq!(out.len(), context.critic_inputs(), "input of a critic");
-        let (input, rest) = out.split_at_mut(POLICY_INPUT_LEN);
-        let (observation, target) = input.split_at_mut(OBSERVATION_LEN);
-        let observation: &mut [f32; OBSERVATION_LEN] = observation.try_into().expect("split at its length");
-        observe_into(&self.state, observation);
+        let (input, rest) = out.split_at_mut(context.skeleton.policy_input_len());
+        let (observation, target) = input.split_at_mut(context.skeleton.observation_len());
+        observe_into(context.skeleton, &self.state, observation);
         context.normalisers.observation.normalise_in_place(observation);
         target.copy_from_slice(&target_input(&self.state, self.command.target));
         let (position, intent) = rest.split_at_mut(context.graph.position_len());

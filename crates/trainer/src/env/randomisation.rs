@@ -3,11 +3,11 @@
 
 use glam::Vec2;
 use physics_bridge::{Model, ModelError, Settings, Terrain};
-use policy_core::Body;
+use policy_core::{BodyId, Skeleton};
 use serde::{Deserialize, Serialize};
 
 use super::command::DT_SECS;
-use super::env::Env;
+use super::env::{Env, EnvContext};
 
 /// Length of a push, seconds.
 pub const PUSH_SECS: f32 = 0.2;
@@ -37,13 +37,26 @@ pub struct RandomisationConfig {
     pub dynamics: f32,
     /// Share of episodes in which every action arrives one tick late.
     pub latency_share: f32,
-    /// Mean seconds between pushes of 0.2 s on pelvis or torso; zero for none.
+    /// Mean seconds between pushes of 0.2 s; zero for none.
     pub push_secs: f32,
     /// Largest force of a push, newton.
     pub push_newton: f32,
+    /// Names of the bodies that are pushed; the root when there are none.
+    pub push_bodies: Vec<String>,
 }
 
 impl RandomisationConfig {
+    /// The bodies that are pushed.
+    ///
+    /// # Errors
+    /// The name of a body that the character does not have.
+    pub fn pushed(&self, skeleton: &Skeleton) -> Result<Vec<BodyId>, String> {
+        if self.push_bodies.is_empty() {
+            return Ok(vec![skeleton.root()]);
+        }
+        self.push_bodies.iter().map(|name| skeleton.body_named(name).ok_or_else(|| name.clone())).collect()
+    }
+
     /// Every combination of ground and body that environments are spread over.
     ///
     /// # Errors
@@ -75,10 +88,11 @@ impl RandomisationConfig {
 
 impl Env {
     /// Now and then begins a push in a random horizontal direction.
-    pub(super) fn push(&mut self, config: &RandomisationConfig) {
+    pub(super) fn push(&mut self, context: &EnvContext<'_>) {
+        let config = &context.config.randomisation;
         if config.push_secs > 0.0 && self.rng.chance(DT_SECS / config.push_secs) {
             let force = Vec2::from_angle(self.rng.angle()) * self.rng.uniform() * config.push_newton;
-            let body = if self.rng.chance(0.5) { Body::Pelvis } else { Body::Torso };
+            let body = context.pushed[self.rng.index(context.pushed.len())];
             self.character
                 .push(body, force.extend(0.0), PUSH_SECS)
                 .expect("a recipe's push is between 0 and 5000 newton");

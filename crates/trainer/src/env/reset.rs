@@ -2,7 +2,7 @@
 //! where an episodic skill hands over.
 
 use physics_bridge::{Pose, Terrain, WALKING_START_MPS};
-use policy_core::{Heading, JointTargets};
+use policy_core::Heading;
 use serde::{Deserialize, Serialize};
 
 use super::command::Command;
@@ -58,6 +58,9 @@ const TERRAIN_HALF_METRES: f32 = 25.0;
 /// Ticks of an episode that starts before a failure, at most.
 const BEFORE_FAILURE_TICKS: u32 = 120;
 
+/// Height that a limp character is dropped from, as a share of that of a standing root.
+const DROP_SHARE: f32 = 0.85;
+
 /// Draws of a start state until one does not fail at once; the last one is taken as it is.
 const START_TRIES: usize = 4;
 
@@ -72,7 +75,7 @@ impl Env {
         self.pre_failure.begin();
         (self.stood_ticks, self.lost_ticks) = (0, 0);
         self.delayed = self.rng.chance(config.randomisation.latency_share);
-        self.late_targets = None;
+        self.has_late_targets = false;
         let before_failure =
             self.rng.chance(config.reset.pre_failure_share) && self.start_before_failure(context);
         self.exploration = Exploration::begin(&config.exploration, before_failure, &mut self.rng);
@@ -152,8 +155,8 @@ impl Env {
             }
             _ if self.rng.chance(start.any_node_share) => self.rng.index(nodes),
             _ if start.along_path => {
-                let [from, to] = context.graph.edges()[self.command.position.edge];
-                if self.rng.chance(self.command.position.t) { to } else { from }
+                let at = self.command.position;
+                if self.rng.chance(at.t) { at.to.index() } else { at.from.index() }
             }
             _ => nodes - 1,
         };
@@ -175,8 +178,8 @@ impl Env {
         }
         self.character.sense_into(&mut self.state);
         self.history.clear();
-        for frame in start.frames.iter() {
-            *self.history.push() = *frame;
+        for frame in start.frames.chunks_exact(self.character.model().skeleton().frame_len()) {
+            self.history.push().copy_from_slice(frame);
         }
     }
 
@@ -232,10 +235,7 @@ impl Env {
     /// Targets that follow the joints: nearly no torque but the joints' damping.
     fn go_limp(&mut self) {
         let pose = self.character.pose();
-        let mut targets = JointTargets::default();
-        for (target, angle) in targets.0.iter_mut().zip(&pose.qpos[7..]) {
-            *target = *angle as f32;
-        }
+        let targets: Vec<f32> = pose.qpos[7..].iter().map(|angle| *angle as f32).collect();
         self.character.actuate(&targets);
     }
 }

@@ -2,7 +2,7 @@
 
 use glam::{Vec2, Vec3};
 use physics_bridge::Contact;
-use policy_core::{Body, CharacterState, Heading};
+use policy_core::{BodyId, CharacterState, Heading, Skeleton};
 use serde::{Deserialize, Serialize};
 
 /// What the task reward is for.
@@ -90,7 +90,7 @@ impl RewardTerms {
     /// With a share of the task reward for a root at a height above the ground, metres: `exp(-|error| / 0.15)`.
     #[must_use]
     pub fn with_height(self, state: &CharacterState, (share, metres): (f32, f32)) -> Self {
-        let height = state.height_of(Body::Pelvis);
+        let height = state.root_height();
         let reward = (-(height - metres).abs() / 0.15).exp();
         Self { task: (1.0 - share) * self.task + share * reward, ..self }
     }
@@ -99,8 +99,8 @@ impl RewardTerms {
 /// How fast the feet slip over what they stand on, metres per second, weighted by the share of the character's weight that
 /// presses there; at most 1.
 #[must_use]
-pub fn foot_slip_mps(state: &CharacterState, contacts: &[Contact], weight_newton: f32) -> f32 {
-    let feet = contacts.iter().filter(|c| matches!(c.body, Body::LeftFoot | Body::RightFoot));
+pub fn foot_slip_mps(feet: &[BodyId], state: &CharacterState, contacts: &[Contact], weight_newton: f32) -> f32 {
+    let feet = contacts.iter().filter(|contact| feet.contains(&contact.body));
     let sum: f32 = feet
         .map(|contact| {
             let foot = state.body(contact.body);
@@ -143,7 +143,7 @@ pub fn target_reward(
     target: Vec2,
     pace: Pace,
 ) -> RewardTerms {
-    let root = state.body(Body::Pelvis);
+    let root = state.root();
     let to_target = target - root.position.truncate();
     let distance = to_target.length();
     let facing_now = Heading::from_rotation(root.rotation).direction();
@@ -171,17 +171,20 @@ pub fn target_reward(
 /// Speed of the root up to which standing up is at ease, metres per second.
 const RISING_MPS: f32 = 1.2;
 
-/// Reward for standing: root and head at their heights, the trunk upright, still once it is up, without a leap.
+/// Reward for standing: root and head at their heights, the trunk upright, still once it is up, without a leap. The trunk is the body that the head hangs on, or the root.
 #[must_use]
-pub fn standing_reward(config: &RewardConfig, state: &CharacterState) -> RewardTerms {
-    let root = (state.height_of(Body::Pelvis) / config.standing_root_metres).clamp(0.0, 1.0);
-    let head = (state.height_of(Body::Head) / config.standing_head_metres).clamp(0.0, 1.0);
-    let up = (state.body(Body::Torso).rotation * Vec3::Z).z.max(0.0);
-    let speed = state.body(Body::Pelvis).linear_velocity.truncate().length();
+pub fn standing_reward(config: &RewardConfig, skeleton: &Skeleton, state: &CharacterState) -> RewardTerms {
+    let root = (state.root_height() / config.standing_root_metres).clamp(0.0, 1.0);
+    let head = skeleton
+        .head()
+        .map_or(root, |head| (state.height_of(head) / config.standing_head_metres).clamp(0.0, 1.0));
+    let trunk = skeleton.head().and_then(|head| skeleton.parent(head)).unwrap_or(skeleton.root());
+    let up = (state.body(trunk).rotation * Vec3::Z).z.max(0.0);
+    let speed = state.root().linear_velocity.truncate().length();
     let height = 0.5 * (root + head);
     let still = if height > 0.9 { (-speed * speed).exp() } else { 0.0 };
     // Standing up faster than at ease pays little.
-    let excess = (state.body(Body::Pelvis).linear_velocity.length() - RISING_MPS).max(0.0);
+    let excess = (state.root().linear_velocity.length() - RISING_MPS).max(0.0);
     let calm = (-3.0 * excess).exp();
     // Linear in the height, so that the first centimetres off the ground pay as well as the last.
     let task = calm * (0.5 * height + 0.3 * height * up + 0.2 * still);

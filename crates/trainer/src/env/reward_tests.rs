@@ -7,13 +7,18 @@ fn with(
     target: Vec2,
     [speed_mps, speed_scale_mps]: [f32; 2],
 ) -> RewardTerms {
-    let state = CharacterState::default();
+    let state = CharacterState::new(&Skeleton::humanoid());
     target_reward(config, &state, velocity, target, Pace { speed_mps, speed_scale_mps })
 }
 
 /// The same with the default ones.
 fn at(velocity: Vec2, target: Vec2, pace: [f32; 2]) -> RewardTerms {
     with(&RewardConfig::default(), velocity, target, pace)
+}
+
+/// A body of the humanoid.
+fn body(name: &str) -> BodyId {
+    Skeleton::humanoid().body_named(name).unwrap()
 }
 
 const AHEAD: Vec2 = Vec2::new(5.0, 0.0);
@@ -66,10 +71,10 @@ fn a_strict_facing_makes_a_little_sideways_cost_much() {
 #[test]
 fn every_centimetre_off_the_ground_pays() {
     let at = |metres: f32| {
-        let mut state = CharacterState::default();
-        state.bodies[Body::Pelvis.index()].position.z = metres;
-        state.bodies[Body::Head.index()].position.z = 1.5 * metres;
-        standing_reward(&RewardConfig::default(), &state).task
+        let mut state = CharacterState::new(&Skeleton::humanoid());
+        state.bodies[0].position.z = metres;
+        state.bodies[body("head").index()].position.z = 1.5 * metres;
+        standing_reward(&RewardConfig::default(), &Skeleton::humanoid(), &state).task
     };
     assert!(at(0.2) - at(0.1) > 0.05, "{} {}", at(0.2), at(0.1));
     assert!((at(0.9) - 1.0).abs() < 1e-6);
@@ -77,8 +82,8 @@ fn every_centimetre_off_the_ground_pays() {
 
 #[test]
 fn a_foot_that_slips_under_the_weight_costs_and_one_that_rolls_or_swings_does_not() {
-    let mut state = CharacterState::default();
-    let foot = &mut state.bodies[Body::LeftFoot.index()];
+    let mut state = CharacterState::new(&Skeleton::humanoid());
+    let foot = &mut state.bodies[body("left_foot").index()];
     (foot.position, foot.linear_velocity) = (Vec3::new(0.0, 0.0, 0.05), Vec3::new(0.4, 0.3, 0.2));
     let touch = |body, newton: f32| Contact {
         body,
@@ -88,13 +93,13 @@ fn a_foot_that_slips_under_the_weight_costs_and_one_that_rolls_or_swings_does_no
         force: Vec3::new(50.0, 0.0, newton),
         depth: 0.0,
     };
-    let both = [touch(Body::LeftFoot, 240.0), touch(Body::LeftHand, 240.0)];
-    assert!((foot_slip_mps(&state, &both, 480.0) - 0.25).abs() < 1e-6);
-    assert_eq!(foot_slip_mps(&state, &[], 480.0), 0.0);
+    let both = [touch(body("left_foot"), 240.0), touch(body("left_hand"), 240.0)];
+    assert!((foot_slip_mps(Skeleton::humanoid().feet(), &state, &both, 480.0) - 0.25).abs() < 1e-6);
+    assert_eq!(foot_slip_mps(Skeleton::humanoid().feet(), &state, &[], 480.0), 0.0);
     // The point that touches rests while the foot turns about it.
-    let foot = &mut state.bodies[Body::LeftFoot.index()];
+    let foot = &mut state.bodies[body("left_foot").index()];
     (foot.linear_velocity, foot.angular_velocity) = (Vec3::new(0.4, 0.0, 0.0), Vec3::new(0.0, 8.0, 0.0));
-    assert!(foot_slip_mps(&state, &both, 480.0) < 1e-6);
+    assert!(foot_slip_mps(Skeleton::humanoid().feet(), &state, &both, 480.0) < 1e-6);
 }
 
 #[test]

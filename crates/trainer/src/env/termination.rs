@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use policy_core::{BODY_NAMES, Body, CharacterState};
+use policy_core::{BodyId, CharacterState, Skeleton};
 use serde::{Deserialize, Serialize};
 
 /// What counts as a failure.
@@ -31,6 +31,8 @@ pub struct TerminationConfig {
     /// Least heights of an upright character's bodies above the ground by their names, metres: of body frames, not of lowest
     /// points.
     pub min_heights: BTreeMap<String, f32>,
+    /// A root lower than this above the ground has fallen in a game, metres; of upright gaits.
+    pub fall_metres: f32,
     /// A root lower than this above the ground lies, metres.
     pub lying_metres: f32,
     /// A root higher than this above the ground stands, metres.
@@ -48,6 +50,7 @@ impl Default for TerminationConfig {
             rule: Termination::Upright,
             height_factor: 1.0,
             min_heights: BTreeMap::new(),
+            fall_metres: 0.5,
             lying_metres: 0.2,
             standing_metres: 0.75,
             down_metres: 0.5,
@@ -59,7 +62,7 @@ impl Default for TerminationConfig {
 /// Heights that tell standing from lying, for one character.
 #[derive(Clone, Debug, PartialEq)]
 pub struct TerminationHeights {
-    upright: Vec<(Body, f32)>,
+    upright: Vec<(BodyId, f32)>,
     lying_metres: f32,
     standing_metres: f32,
     down_metres: f32,
@@ -70,11 +73,8 @@ impl TerminationHeights {
     ///
     /// # Errors
     /// The name of a body that the character does not have.
-    pub fn new(config: &TerminationConfig) -> Result<Self, String> {
-        let body = |name: &String| {
-            let index = BODY_NAMES.iter().position(|n| n == name).ok_or_else(|| name.clone())?;
-            Ok::<Body, String>(Body::ALL[index])
-        };
+    pub fn new(config: &TerminationConfig, skeleton: &Skeleton) -> Result<Self, String> {
+        let body = |name: &String| skeleton.body_named(name).ok_or_else(|| name.clone());
         let upright = config.min_heights.iter().map(|(name, metres)| Ok((body(name)?, *metres)));
         Ok(Self {
             upright: upright.collect::<Result<_, String>>()?,
@@ -87,7 +87,7 @@ impl TerminationHeights {
     /// True when the root is as high as that of a standing character.
     #[must_use]
     pub fn stands(&self, state: &CharacterState) -> bool {
-        state.height_of(Body::Pelvis) > self.standing_metres
+        state.root_height() > self.standing_metres
     }
 }
 
@@ -129,12 +129,6 @@ impl TerminationRule {
         }
     }
 
-    /// True when going from a position with this rule to one with the other requires standing up first.
-    #[must_use]
-    pub fn rises_to(self, to: Self) -> bool {
-        !self.is_upright() && to.is_upright()
-    }
-
     /// True where a character should be upright.
     #[must_use]
     pub fn is_upright(self) -> bool {
@@ -144,7 +138,7 @@ impl TerminationRule {
     /// True when the character has failed. `stood` tells whether it has [stood](TerminationHeights::stands) in this episode.
     #[must_use]
     pub fn is_broken_by(self, heights: &TerminationHeights, state: &CharacterState, stood: bool) -> bool {
-        let root = state.height_of(Body::Pelvis);
+        let root = state.root_height();
         match self {
             Self::Never => false,
             Self::Again => stood && root < heights.down_metres,
@@ -169,7 +163,6 @@ mod tests {
         assert_eq!(TerminationRule::between([never, low], 0.5), never);
         let both = TerminationRule::between([upright, TerminationRule::Upright(1.0)], 0.5);
         assert_eq!(both, TerminationRule::Upright(0.9));
-        assert!(low.rises_to(upright) && !upright.rises_to(low) && !upright.rises_to(upright));
     }
 
     #[test]
@@ -178,8 +171,8 @@ mod tests {
             min_heights: [("pelvis".to_owned(), 0.45)].into(),
             ..TerminationConfig::default()
         };
-        let heights = TerminationHeights::new(&config).unwrap();
-        let mut state = CharacterState::default();
+        let heights = TerminationHeights::new(&config, &Skeleton::humanoid()).unwrap();
+        let mut state = CharacterState::new(&Skeleton::humanoid());
         for metres in [0.3, 0.1] {
             state.bodies.iter_mut().for_each(|body| body.position.z = metres);
             let broken = |rule: TerminationRule, stood| rule.is_broken_by(&heights, &state, stood);
@@ -194,6 +187,6 @@ mod tests {
     fn a_body_that_the_character_lacks_is_named() {
         let min_heights = [("tail".to_owned(), 0.4)].into();
         let config = TerminationConfig { min_heights, ..TerminationConfig::default() };
-        assert_eq!(TerminationHeights::new(&config), Err("tail".to_owned()));
+        assert_eq!(TerminationHeights::new(&config, &Skeleton::humanoid()), Err("tail".to_owned()));
     }
 }

@@ -1,7 +1,8 @@
 //! Clip tracking: one skill from a phase of its clip until the tracking error exceeds its threshold, or, of skills trained
 //! together, the clips of whatever node the character rests at.
 
-use policy_core::ActionScaling;
+use policy_core::NodeId;
+use policy_core::training::ActionScaling;
 
 use super::demonstrations::{ClipPhase, Demonstrations};
 use super::env::{Env, EnvContext};
@@ -95,11 +96,10 @@ impl Env {
     pub fn reference_action_into(&self, context: &EnvContext<'_>, scaling: &ActionScaling, out: &mut [f32]) {
         match self.tracking {
             Some(Tracking { node, phase, .. }) => {
-                let angles = context.demonstrations[node].ahead(phase);
-                let scales = angles.iter().zip(scaling.centre()).zip(scaling.gain());
-                let actions =
-                    scales.map(|((angle, centre), gain)| ((angle - centre) / gain).clamp(-1.0, 1.0));
-                out.iter_mut().zip(actions).for_each(|(out, action)| *out = action);
+                context.demonstrations[node].ahead_into(phase, out);
+                for ((out, centre), gain) in out.iter_mut().zip(scaling.centre()).zip(scaling.gain()) {
+                    *out = ((*out - centre) / gain).clamp(-1.0, 1.0);
+                }
             }
             None => out.fill(f32::NAN),
         }
@@ -125,7 +125,7 @@ impl Env {
     /// Tracking reward for the clips of the node that it rests at, from the nearest phase on. After the threshold was exceeded
     /// tracking pauses, or a character that rests in one pose would be found again and again.
     pub(super) fn track_node(&mut self, context: &EnvContext<'_>) -> f32 {
-        let Some(node) = context.graph.node_at(self.command.position) else {
+        let Some(node) = self.command.position.as_node().map(NodeId::index) else {
             self.tracking = None;
             return 0.0;
         };

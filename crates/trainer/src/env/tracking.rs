@@ -2,10 +2,10 @@
 //! heading matters, and nothing jumps where a root points straight up or down and has no heading.
 
 use glam::Vec3;
-use policy_core::{BODY_COUNT, Body, CharacterState};
+use policy_core::CharacterState;
 
 /// What tracking compares of a state.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct TrackedState {
     /// Height of the root above the ground, metres.
     height: f32,
@@ -14,9 +14,9 @@ pub struct TrackedState {
     /// Velocity of the root, seen from it, metres per second.
     velocity: Vec3,
     /// Positions of all bodies, seen from the root, metres.
-    positions: [Vec3; BODY_COUNT],
+    positions: Vec<Vec3>,
     /// Their velocities relative to the root's, seen from it, metres per second.
-    velocities: [Vec3; BODY_COUNT],
+    velocities: Vec<Vec3>,
 }
 
 /// Early-termination threshold of the root's height, metres.
@@ -29,14 +29,18 @@ impl TrackedState {
     /// Of a state.
     #[must_use]
     pub fn of(state: &CharacterState) -> Self {
-        let root = state.body(Body::Pelvis);
+        let root = state.root();
         let seen = root.rotation.inverse();
         Self {
-            height: state.height_of(Body::Pelvis),
+            height: state.root_height(),
             up: seen * Vec3::Z,
             velocity: seen * root.linear_velocity,
-            positions: state.bodies.each_ref().map(|b| seen * (b.position - root.position)),
-            velocities: state.bodies.each_ref().map(|b| seen * (b.linear_velocity - root.linear_velocity)),
+            positions: state.bodies.iter().map(|b| seen * (b.position - root.position)).collect(),
+            velocities: state
+                .bodies
+                .iter()
+                .map(|b| seen * (b.linear_velocity - root.linear_velocity))
+                .collect(),
         }
     }
 
@@ -78,11 +82,12 @@ fn rms(a: &[Vec3], b: &[Vec3]) -> f32 {
 #[cfg(test)]
 mod tests {
     use glam::Quat;
+    use policy_core::Skeleton;
 
     use super::*;
 
     fn state(turn: Quat, shift: Vec3) -> CharacterState {
-        let mut state = CharacterState::default();
+        let mut state = CharacterState::new(&Skeleton::humanoid());
         for (i, body) in state.bodies.iter_mut().enumerate() {
             let i = i as f32;
             body.position = turn * Vec3::new(0.1 * i, 0.3 - 0.05 * i, 0.02 * i) + shift + 0.8 * Vec3::Z;

@@ -2,7 +2,7 @@
 //! share the work.
 
 use physics_bridge::Model;
-use policy_core::{ActionScaling, DISCRIMINATOR_INPUT_LEN, DOF_COUNT};
+use policy_core::training::ActionScaling;
 use rayon::prelude::*;
 
 use super::env::{Env, EnvContext, Episode};
@@ -55,7 +55,7 @@ pub struct VecEnv {
     /// Node nearest to where every character acted in the last tick.
     nearest: Vec<usize>,
     scaling: ActionScaling,
-    /// Critic inputs of every character now; the policy's are their first [`POLICY_INPUT_LEN`].
+    /// Critic inputs of every character now; they begin with the policy's.
     pub inputs: Vec<f32>,
     /// Critic inputs right after the last tick, before any reset.
     pub inputs_after: Vec<f32>,
@@ -116,9 +116,10 @@ impl VecEnv {
     /// # Panics
     /// When there are not as many rows as characters.
     pub fn step(&mut self, context: &EnvContext<'_>, actions: &[f32], discriminator_inputs: &mut [f32]) {
-        let count = self.envs.len();
-        assert_eq!(actions.len(), count * DOF_COUNT, "actions of a vec_env");
-        assert_eq!(discriminator_inputs.len(), count * DISCRIMINATOR_INPUT_LEN, "discriminator inputs");
+        let (count, joints) = (self.envs.len(), context.skeleton.joint_count());
+        let scored_len = context.skeleton.discriminator_input_len();
+        assert_eq!(actions.len(), count * joints, "actions of a vec_env");
+        assert_eq!(discriminator_inputs.len(), count * scored_len, "discriminator inputs");
         let (scaling, width) = (&self.scaling, context.critic_inputs());
         let outs = self
             .ends
@@ -127,16 +128,13 @@ impl VecEnv {
             .zip(self.episodes.par_iter_mut().zip(self.nearest.par_iter_mut()))
             .zip(self.inputs.par_chunks_exact_mut(width))
             .zip(self.inputs_after.par_chunks_exact_mut(width))
-            .zip(discriminator_inputs.par_chunks_exact_mut(DISCRIMINATOR_INPUT_LEN));
-        let pairs = self.envs.par_iter_mut().zip(actions.par_chunks_exact(DOF_COUNT)).with_min_len(8);
+            .zip(discriminator_inputs.par_chunks_exact_mut(scored_len));
+        let pairs = self.envs.par_iter_mut().zip(actions.par_chunks_exact(joints)).with_min_len(8);
         pairs.zip(outs).for_each(
             |((env, action), (((((end, terms), (episode, node)), input), after), scored))| {
-                let action: &[f32; DOF_COUNT] = action.try_into().expect("a chunk of this length");
-                let scored: &mut [f32; DISCRIMINATOR_INPUT_LEN] =
-                    scored.try_into().expect("a chunk of this length");
                 (*terms, *end) = env.step(context, scaling, action, scored);
                 *episode = (*end != Done::No).then(|| env.episode(*end));
-                *node = context.graph.nearest(env.command.position);
+                *node = env.command.position.nearest_node().index();
                 env.observe_into(context, after);
                 if *end == Done::No {
                     env.advance_command(context);

@@ -41,6 +41,7 @@ const RANGES: &[(&str, f64, f64)] = &[
     ("environment.reward.standing_head_metres", 0.01, 100.0),
     ("environment.termination.height_factor", 0.0, 2.0),
     ("environment.termination.min_heights.*", 0.0, 100.0),
+    ("environment.termination.fall_metres", 0.0, 100.0),
     ("environment.termination.lying_metres", 0.0, 100.0),
     ("environment.termination.standing_metres", 0.0, 100.0),
     ("environment.termination.down_metres", 0.0, 100.0),

@@ -1,20 +1,21 @@
 //! Starts where an episodic skill hands over: the character is dropped limp and the skill raises it, as in a game.
 
-use policy_core::{Command as GameCommand, Controller, SkillEnd};
+use policy_core::training::RISE_SECONDS;
+use policy_core::{Command as GameCommand, Controller, SkillEnd, SkillId};
 
 use super::super::command::{Command, DT_SECS};
 use super::super::env::{Env, EnvContext};
 
-/// Ticks that standing up may take; after that the start is given up.
-const RISE_TICKS: u32 = 180;
+/// Ticks that the skill may take, twice what a game gives a rise; after that the start is given up.
+const RISE_TICKS: u32 = (2.0 * RISE_SECONDS / DT_SECS) as u32;
 
 /// An episodic skill that raises a character, and where on the graph it hands over.
 #[derive(Clone, Debug)]
 pub struct HandOver {
     /// A controller of a pack with the skill, without automatic recovery.
     pub controller: Controller,
-    /// Index of the skill in that pack.
-    pub skill: usize,
+    /// The skill in that pack.
+    pub skill: SkillId,
     /// Node of the graph that the skill returns to.
     pub node: usize,
 }
@@ -30,7 +31,8 @@ impl Env {
         controller.reset();
         let mut asked = GameCommand { skill: Some(hand_over.skill), ..GameCommand::default() };
         for _ in 0..RISE_TICKS {
-            let targets = *controller.tick(&self.state, &asked, DT_SECS);
+            let targets = controller.tick(&self.state, &asked, DT_SECS);
+            self.character.actuate(targets);
             asked.skill = None;
             match controller.report().skill_ended {
                 Some((_, SkillEnd::Recognised)) => {
@@ -48,7 +50,6 @@ impl Env {
                 Some(_) => return false,
                 None => {}
             }
-            self.character.actuate(&targets);
             if self.character.step().is_err() {
                 return false;
             }
@@ -65,7 +66,7 @@ mod tests {
     use std::sync::Arc;
 
     use physics_bridge::Model;
-    use policy_core::{Body, CharacterPack, ControllerConfig};
+    use policy_core::{CharacterPack, ControllerConfig, NodeId};
 
     use super::super::super::config::EnvironmentConfig;
     use super::super::super::demonstrations::Demonstrations;
@@ -90,30 +91,32 @@ mod tests {
             Demonstrations::from_clips(&[(still(30), 1.0, false)], &model, &normalisers.frame).unwrap();
         let config = EnvironmentConfig::default();
         let nodes = ["walk", "idle"].map(|name| GraphNode::new(name, &config, 1.0)).to_vec();
-        let graph = TrainingGraph::new(nodes, vec![vec![1, 0]]);
+        let graph = TrainingGraph::along(nodes, &[vec![1, 0]], [1.0; 2]).unwrap();
         let hand_over = HandOver {
             skill: pack.skill_named("get_up").unwrap(),
             controller: Controller::with_config(
                 pack,
-                ControllerConfig { recover: false, ..Default::default() },
+                ControllerConfig { auto_recover: false, assist_rise: false, ..Default::default() },
             ),
             node: 1,
         };
         let context = EnvContext {
             config: &config,
+            skeleton: model.skeleton(),
             graph: &graph,
             demonstrations: &[&clips, &clips],
             start_demonstrations: None,
             hand_over: Some(&hand_over),
             normalisers: &normalisers,
-            heights: &TerminationHeights::new(&config.termination).unwrap(),
+            heights: &TerminationHeights::new(&config.termination, model.skeleton()).unwrap(),
+            pushed: &[],
         };
         let mut env = Env::new(&model, Rng::new(7, 0));
         let mut up = 0;
         for _ in 0..8 {
             if env.start_at_hand_over(&context) {
-                assert!(env.state.height_of(Body::Pelvis) > 0.7 && !env.tracks());
-                assert_eq!(graph.node_at(env.command.position), Some(1));
+                assert!(env.state.root_height() > 0.7 && !env.tracks());
+                assert_eq!(env.command.position.as_node(), Some(NodeId::new(1)));
                 up += 1;
             }
         }

@@ -1,7 +1,7 @@
 //! Pre-failure resets: states shortly before failures, to start episodes from. A failure of once a minute is met often.
 
 use physics_bridge::{Character, Snapshot};
-use policy_core::FrameHistory;
+use policy_core::training::FrameHistory;
 
 use super::super::command::Command;
 use crate::Rng;
@@ -110,7 +110,7 @@ mod tests {
         for _ in 0..ticks {
             character.step().unwrap();
             if states.tick() {
-                states.keep(character, &FrameHistory::default(), Command::default());
+                states.keep(character, &FrameHistory::new(125), Command::default());
             }
         }
         states.failed(rng);
