@@ -3,14 +3,13 @@
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
-use std::time::Instant;
 
 use anyhow::{Context, Result};
 use clap::Args;
 use physics_bridge::Model;
 use policy_core::{CharacterPack, CharacterState};
 use trainer::clip::ClipFolder;
-use trainer::evaluate::{Effort, clip_states, evaluate};
+use trainer::evaluate::{Effort, Progress, Section, clip_states, evaluate, plots, table};
 use trainer::recipe::Recipe;
 use trainer::storage::write_atomically;
 
@@ -22,9 +21,21 @@ pub(crate) struct Arguments {
     /// File to write the measures to.
     #[arg(long)]
     json: Option<PathBuf>,
-    /// Fewer characters and seconds: under a minute.
+    /// File to draw a page of plots of what a player feels to, as SVG.
+    #[arg(long)]
+    plots: Option<PathBuf>,
+    /// Fewer characters and seconds: under three minutes.
     #[arg(long)]
     quick: bool,
+    /// Measure these sections alone, separated by commas.
+    #[arg(long, value_delimiter = ',', value_parser = section)]
+    only: Vec<Section>,
+}
+
+/// The section of a name.
+fn section(name: &str) -> Result<Section, String> {
+    let names = || Section::ALL.map(Section::name).join(", ");
+    Section::from_name(name).ok_or_else(|| format!("expected one of {}", names()))
 }
 
 /// Measures.
@@ -38,14 +49,18 @@ pub(crate) fn run(
     let bytes = std::fs::read(path).with_context(|| format!("cannot read {}", path.display()))?;
     let pack = CharacterPack::from_bytes(&bytes).with_context(|| path.display().to_string())?;
     let effort = if arguments.quick { Effort::QUICK } else { Effort::FULL };
-    let start = Instant::now();
+    let sections: &[Section] = if arguments.only.is_empty() { &Section::ALL } else { &arguments.only };
     let states = match clips {
         Some(clips) => states_of_clips(model, recipes, clips, &pack)?,
         None => BTreeMap::new(),
     };
-    let evaluation = evaluate(model, &Arc::new(pack), &effort, &states, |what| {
-        eprintln!("{:5.0} s {what}", start.elapsed().as_secs_f32());
-    })?;
+    let progress = Progress::bar();
+    let evaluation = evaluate(model, &Arc::new(pack), &effort, sections, &states, &progress)?;
+    progress.finish();
+    if let Some(svg) = &arguments.plots {
+        plots::draw(&evaluation.player, svg).with_context(|| format!("cannot draw {}", svg.display()))?;
+    }
+    eprint!("{}", table(&evaluation.player));
     let text = serde_json::to_string_pretty(&evaluation)?;
     match &arguments.json {
         Some(path) => {

@@ -1,0 +1,161 @@
+//! One character under its controller, steered through [`CommandMapper`] as a pad would steer it.
+//!
+//! A measure settles a character in a gait, then acts: it moves the stick, presses a button or pushes the body.
+
+mod disturbance;
+mod gait;
+mod low_pass;
+mod settled;
+mod statistics;
+
+use std::sync::Arc;
+
+use glam::Vec2;
+use physics_bridge::{CONTROL_HZ, Character, Model, WALKING_START_MPS};
+use policy_core::{
+    Bindings, Body, CharacterPack, CharacterState, Command, CommandMapper, Controller, ControllerConfig,
+    GamepadState, Heading,
+};
+
+pub use disturbance::Disturbance;
+pub use gait::Gait;
+pub use low_pass::LowPass;
+pub use settled::Settled;
+pub use statistics::{mean, median, quantile};
+
+/// Seconds of a control tick.
+pub const TICK_SECS: f32 = 1.0 / CONTROL_HZ as f32;
+
+/// Ticks in a time, rounded.
+#[must_use]
+pub fn ticks(secs: f32) -> u32 {
+    (secs / TICK_SECS).round() as u32
+}
+
+/// A character, its controller and the pad that steers it. The camera looks along world x.
+#[derive(Debug)]
+pub struct Trial {
+    /// The body.
+    pub character: Character,
+    /// What steers it.
+    pub controller: Controller,
+    /// What it senses now.
+    pub state: CharacterState,
+    /// The pad, as it is held now.
+    pub pad: GamepadState,
+    /// Horizontal velocity of the pelvis, low-passed, metres per second.
+    pub velocity: LowPass,
+    /// What comes between the controller and the motors.
+    pub disturbance: Disturbance,
+    mapper: CommandMapper,
+    asked_skill: Option<usize>,
+}
+
+impl Trial {
+    /// A character that walks along x, with the pad in the hold of `gait`. `auto_recover` lets it get up by itself.
+    #[must_use]
+    pub fn new(model: &Model, pack: &Arc<CharacterPack>, gait: &Gait, auto_recover: bool) -> Self {
+        let config = ControllerConfig { recover: auto_recover, start: gait.start, ..Default::default() };
+        let mut trial = Self {
+            character: Character::new(model),
+            controller: Controller::with_config(pack.clone(), config),
+            state: CharacterState::default(),
+            pad: gait.pad,
+            velocity: LowPass::default(),
+            disturbance: Disturbance::default(),
+            asked_skill: None,
+            mapper: CommandMapper::new(pack, &Bindings::default()),
+        };
+        trial.place(Vec2::ZERO, 0.0);
+        trial
+    }
+
+    /// Stands the character up at a place, metres, walking along a direction, radians from x.
+    pub fn place(&mut self, place: Vec2, angle: f32) {
+        self.controller.reset();
+        let heading = Heading::from_angle(angle);
+        let speed = if self.stands() { 0.0 } else { WALKING_START_MPS };
+        self.character.stand_at(place.x, place.y, heading, speed).expect("places tried are finite");
+        self.character.sense_into(&mut self.state);
+        self.velocity = LowPass::at(speed * heading.direction());
+    }
+
+    /// True when the policy that the controller starts with stands still.
+    fn stands(&self) -> bool {
+        let node = self.controller.report().position.nearest_node();
+        self.controller.pack().graph().nodes()[node].speed_mps == Some(0.0)
+    }
+
+    /// Points the stick to a direction, radians from x, counter-clockwise, as far as `push` in [0, 1].
+    pub fn steer(&mut self, angle: f32, push: f32) {
+        self.pad.left_stick = [-push * angle.sin(), push * angle.cos()];
+    }
+
+    /// One control tick. False when the physics diverged.
+    pub fn tick(&mut self) -> bool {
+        self.tick_with(|_| {})
+    }
+
+    /// One control tick with a command that `change` has altered. False when the physics diverged.
+    pub fn tick_with(&mut self, change: impl FnOnce(&mut Command)) -> bool {
+        let mut command = self.mapper.map(&self.pad, Heading::FORWARD, &self.state);
+        change(&mut command);
+        self.asked_skill = command.skill;
+        let mut targets = *self.controller.tick(&self.state, &command, TICK_SECS);
+        self.disturbance.apply(&mut targets);
+        self.character.actuate(&targets);
+        let sound = self.character.step().is_ok();
+        self.character.sense_into(&mut self.state);
+        self.velocity.tick(self.state.body(Body::Pelvis).linear_velocity.truncate());
+        sound
+    }
+
+    /// Index of the skill that was asked for in the last tick.
+    #[must_use]
+    pub fn asked_skill(&self) -> Option<usize> {
+        self.asked_skill
+    }
+
+    /// True when the character has fallen.
+    #[must_use]
+    pub fn is_down(&self) -> bool {
+        self.controller.report().fallen
+    }
+
+    /// Horizontal place of the pelvis, metres.
+    #[must_use]
+    pub fn position(&self) -> Vec2 {
+        self.state.body(Body::Pelvis).position.truncate()
+    }
+
+    /// Height of the pelvis above the ground, metres.
+    #[must_use]
+    pub fn pelvis_height(&self) -> f32 {
+        self.state.height_of(Body::Pelvis)
+    }
+
+    /// Angle of the pelvis' heading from x, radians.
+    #[must_use]
+    pub fn heading(&self) -> f32 {
+        Heading::from_rotation(self.state.body(Body::Pelvis).rotation).angle()
+    }
+
+    /// True when pelvis and head are as high as in standing.
+    #[must_use]
+    pub fn is_upright(&self) -> bool {
+        self.pelvis_height() > 0.65 && self.state.height_of(Body::Head) > 1.1
+    }
+
+    /// True when the graph position is where the controller is going.
+    #[must_use]
+    pub fn has_arrived(&self) -> bool {
+        let report = self.controller.report();
+        match report.goal.as_node() {
+            Some(node) => report.position.as_node() == Some(node),
+            None => {
+                let t = report.goal.along(report.position.from, report.position.to);
+                t.is_some_and(|t| (t - report.position.t).abs() < 1e-3)
+            }
+        }
+    }
+}
