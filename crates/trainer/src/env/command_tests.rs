@@ -17,7 +17,8 @@ fn edge() -> TrainingGraph {
     let node = |name: &str, speed_mps, share| {
         GraphNode::new(name, &with(CommandConfig { speed_mps, ..CommandConfig::default() }), share)
     };
-    TrainingGraph::along(vec![node("walk", 1.25, 0.3), node("idle", 0.0, 0.7)], &[vec![0, 1]], [1.0; 2]).unwrap()
+    TrainingGraph::along(vec![node("walk", 1.25, 0.3), node("idle", 0.0, 0.7)], &[vec![0, 1]], [1.0; 2])
+        .unwrap()
 }
 
 #[test]
@@ -114,11 +115,14 @@ fn leaving_a_low_gait_requires_standing_first() {
         command.advance(&config, &graph, Vec2::ZERO, UP, &mut rng);
     }
     let mut held = 0.0_f32;
-    for _ in 0..60 {
+    for _ in 0..400 {
         command.advance(&config, &graph, Vec2::ZERO, LOW, &mut rng);
         held = held.max(command.fall.rising_seconds());
+        if held > 1.0 {
+            break;
+        }
     }
-    assert!(held > 0.0 && !command.stuck(), "{held}");
+    assert!(held > 1.0 && !command.stuck(), "{held}");
     // Asked to stay up, it is late after 0.8 s and stuck after three.
     let mut command = Command { asked: 0.0, goal: 0.0, ..Command::at(&graph, PathId::new(0), 0.01) };
     for tick in 1..=95 {
@@ -143,7 +147,10 @@ fn a_sweep_goes_to_both_ends_and_does_not_rest() {
         for _ in 0..250 {
             let before = graph.pair_and_blend(command.position).1;
             command.advance(&config, &graph, Vec2::ZERO, UP, &mut rng);
-            ends = [ends[0] || graph.pair_and_blend(command.position).1 == 0.0, ends[1] || graph.pair_and_blend(command.position).1 == 1.0];
+            ends = [
+                ends[0] || graph.pair_and_blend(command.position).1 == 0.0,
+                ends[1] || graph.pair_and_blend(command.position).1 == 1.0,
+            ];
             still += usize::from(graph.pair_and_blend(command.position).1 == before);
         }
         assert!(ends == [true; 2] && still <= 5, "{ends:?} {still}");
@@ -157,7 +164,8 @@ fn the_position_follows_what_is_asked_no_faster_than_an_edge_allows() {
     let nodes = [("walk", 1.25), ("idle", 0.0)].map(|(name, speed_mps)| {
         GraphNode::new(name, &with(CommandConfig { speed_mps, ..config.clone() }), 1.0)
     });
-    let (graph, mut rng) = (TrainingGraph::along(nodes.to_vec(), &[vec![0, 1]], [1.0; 2]).unwrap(), Rng::new(3, 1));
+    let (graph, mut rng) =
+        (TrainingGraph::along(nodes.to_vec(), &[vec![0, 1]], [1.0; 2]).unwrap(), Rng::new(3, 1));
     let mut moved = 0.0;
     for _ in 0..50 {
         let mut command = Command::start(&config, &graph, false, &mut rng);
