@@ -11,28 +11,25 @@ use crate::evaluate::Rig;
 const ACTION_NOISE: f32 = 0.1;
 
 /// What differs from training.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug)]
 enum Change {
     Nothing,
     LateTick,
     Noise,
-    Settings(Settings),
+    Settings(fn(&mut Settings)),
     /// Factor on an attribute of the MJCF.
     Attribute(&'static str, f64),
 }
 
-/// Settings of the MJCF itself.
-const PLAIN: Settings = Settings { gravity: 1.0, friction: 1.0, strength: 1.0 };
-
 const CASES: [(&str, Change); 13] = [
     ("none", Change::Nothing),
     ("latency_1_tick", Change::LateTick),
-    ("strength_x0.8", Change::Settings(Settings { strength: 0.8, ..PLAIN })),
-    ("strength_x1.2", Change::Settings(Settings { strength: 1.2, ..PLAIN })),
-    ("friction_x0.5", Change::Settings(Settings { friction: 0.5, ..PLAIN })),
-    ("friction_x1.5", Change::Settings(Settings { friction: 1.5, ..PLAIN })),
-    ("gravity_x0.8", Change::Settings(Settings { gravity: 0.8, ..PLAIN })),
-    ("gravity_x1.2", Change::Settings(Settings { gravity: 1.2, ..PLAIN })),
+    ("strength_x0.8", Change::Settings(|settings| settings.strength = 0.8)),
+    ("strength_x1.2", Change::Settings(|settings| settings.strength = 1.2)),
+    ("friction_x0.5", Change::Settings(|settings| settings.friction = 0.5)),
+    ("friction_x1.5", Change::Settings(|settings| settings.friction = 1.5)),
+    ("gravity_x0.8", Change::Settings(|settings| settings.gravity = 0.8)),
+    ("gravity_x1.2", Change::Settings(|settings| settings.gravity = 1.2)),
     ("mass_x0.8", Change::Attribute("density", 0.8)),
     ("mass_x1.2", Change::Attribute("density", 1.2)),
     ("timestep_x0.5", Change::Attribute("timestep", 0.5)),
@@ -79,7 +76,11 @@ pub(in crate::evaluate) const CASE_COUNT: usize = CASES.len();
 
 fn changed(model: &Model, change: Change) -> Result<Model, ModelError> {
     match change {
-        Change::Settings(settings) => model.with_settings(settings),
+        Change::Settings(change) => {
+            let mut settings = model.settings();
+            change(&mut settings);
+            model.with_settings(settings)
+        }
         Change::Attribute(name, factor) => Model::from_mjcf(&scaled(model.mjcf(), name, factor)),
         Change::Nothing | Change::LateTick | Change::Noise => Ok(model.clone()),
     }
