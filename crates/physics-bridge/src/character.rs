@@ -1,23 +1,41 @@
-//! The mutable half: one humanoid in its world, and its step.
+//! The mutable half: one character in its world, and its step.
+
+mod contact;
+mod control;
+mod diverged;
+mod history;
+mod plausibility;
+mod push;
+mod replay_file;
+mod reset;
+mod sense;
+mod snapshot;
 
 use std::sync::Arc;
 
 use mujoco_rs::wrappers::mj_data::MjData;
 use mujoco_rs::wrappers::mj_model::MjModel;
-use policy_core::Heading;
+use policy_core::{BodyId, CharacterState, Heading};
 
-use crate::contact::{self, Contact, MOST_CONTACTS};
-use crate::diverged::{Diverged, Warning};
-use crate::dump::Dump;
-use crate::history::History;
-use crate::model::Model;
-use crate::push::Pushes;
-use crate::snapshot::Snapshot;
+use self::history::History;
+use self::plausibility::Fault;
+use self::push::Pushes;
+use crate::description::model::Model;
 
-/// One humanoid: [`Character::sense_into`], [`Character::actuate`] and [`Character::step`] each control tick.
+pub use self::contact::Contact;
+pub use self::diverged::{Cause, Diverged, Excess};
+pub use self::history::{HISTORY_SECS, NotRecorded};
+pub use self::plausibility::{MAX_DEPTH_M, MAX_DISTANCE_M, MAX_SPEED_MPS, MAX_SPIN_RADPS};
+pub use self::push::{MAX_PUSHED_MPS, PushError};
+pub use self::replay_file::{ReplayFile, ReplayFileError};
+pub use self::reset::{ModelMismatch, WALKING_START_MPS};
+pub use self::snapshot::{Snapshot, SnapshotMismatch, StateHash};
+
+/// One character. Each control tick calls [`Character::sense_into`], [`Character::actuate`] and
+/// [`Character::step`], or [`Character::control_tick`] for all of them.
 ///
 /// Everything derived from the state, such as positions and velocities of the bodies, is up to date between
-/// calls. Allocates about 5 MB when it is made, and nothing when it is stepped.
+/// calls. Allocates when it is made, about 5 MB for the humanoid, and nothing when it is stepped.
 ///
 /// ```
 /// # fn main() -> Result<(), Box<dyn std::error::Error>> {
@@ -25,8 +43,10 @@ use crate::snapshot::Snapshot;
 /// use physics_bridge::{Character, Model};
 /// use policy_core::{CharacterState, JointTargets};
 ///
-/// let mut character = Character::new(&Model::from_mjcf(HUMANOID)?);
-/// let (mut state, targets) = (CharacterState::default(), JointTargets::default());
+/// let model = Model::from_mjcf(HUMANOID)?;
+/// let mut character = Character::new(&model);
+/// let mut state = CharacterState::new(model.skeleton());
+/// let targets = JointTargets::new(model.skeleton());
 /// for _ in 0..3 {
 ///     character.sense_into(&mut state);
 ///     // a controller makes targets of the state here
@@ -39,29 +59,32 @@ use crate::snapshot::Snapshot;
 /// ```
 #[derive(Debug)]
 pub struct Character {
-    pub(crate) model: Model,
-    pub(crate) data: MjData<Arc<MjModel>>,
-    pub(crate) tick: u64,
-    pub(crate) pushes: Pushes,
-    pub(crate) contacts: Vec<Contact>,
-    pub(crate) history: Option<Box<History>>,
+    model: Model,
+    data: MjData<Arc<MjModel>>,
+    tick: u64,
+    pushes: Pushes,
+    contacts: Vec<Contact>,
+    history: Option<Box<History>>,
     /// The state before the last tick, to fall back on.
-    pub(crate) before: Snapshot,
+    before: Snapshot,
+    /// What was sensed at the start of the last [`Character::control_tick`].
+    sensed: CharacterState,
 }
 
 impl Character {
     /// A character that stands at rest at the origin, facing along x. Keeps no history until
-    /// [`Character::record_history`] is called.
+    /// [`Character::record_history`] is called. Allocates.
     #[must_use]
     pub fn new(model: &Model) -> Self {
         let mut character = Self {
             model: model.clone(),
             data: model.new_data(),
             tick: 0,
-            pushes: Pushes::default(),
-            contacts: Vec::with_capacity(MOST_CONTACTS),
+            pushes: Pushes::new(model.skeleton()),
+            contacts: Vec::with_capacity(contact::most_contacts(model.skeleton())),
             history: None,
             before: Snapshot::for_model(model),
+            sensed: CharacterState::new(model.skeleton()),
         };
         character.stand_at(0.0, 0.0, Heading::FORWARD, 0.0).expect("finite numbers, a checked pose");
         character
@@ -82,13 +105,14 @@ impl Character {
     /// Runs one control tick of physics.
     ///
     /// # Errors
-    /// When the motion is no longer finite, or MuJoCo warns of anything else. The character is then back in
-    /// its state before the tick, and the error carries that state, to be saved and replayed.
+    /// When MuJoCo warns of anything, or a body ends the tick beyond a limit of plausible motion
+    /// ([`MAX_SPEED_MPS`] and the others). The character is then back in its state before the tick, and the error
+    /// carries that state, to be saved and replayed.
     pub fn step(&mut self) -> Result<(), Diverged> {
         self.before.record(&self.data, self.tick, &self.pushes);
         let substeps = self.model.substeps();
         for substep in 0..substeps {
-            self.pushes.apply(&mut self.data, &self.model.layout().body_ids);
+            self.pushes.apply(&mut self.data, self.model.layout());
             // The two halves of `mj_step`, turned round, so that everything derived from the state is up to
             // date when the tick ends.
             self.data.step2();
@@ -97,8 +121,14 @@ impl Character {
             }
             self.data.step1();
             if let Some(index) = self.data.warning().iter().position(|w| w.number > 0) {
-                return Err(self.diverge(substep, index));
+                let cause = Cause::WARNINGS[index];
+                let place = usize::try_from(self.data.warning()[index].lastinfo).ok();
+                let body = place.and_then(|place| cause.body(self.model.layout(), place));
+                return Err(self.diverge(substep, cause, body, None));
             }
+        }
+        if let Some(Fault { cause, body, excess }) = self.fault() {
+            return Err(self.diverge(substeps - 1, cause, Some(body), Some(excess)));
         }
         self.tick += 1;
         if let Some(history) = &mut self.history {
@@ -108,19 +138,22 @@ impl Character {
     }
 
     /// Computes what is derived from the state.
-    pub(crate) fn refresh(&mut self) {
+    fn refresh(&mut self) {
         self.data.step1();
         self.contacts.clear();
     }
 
-    /// Reads the warning and returns to the state before the tick.
-    fn diverge(&mut self, substep: u32, index: usize) -> Diverged {
-        let warning = Warning::ALL[index];
-        let place = usize::try_from(self.data.warning()[index].lastinfo).ok();
-        let body = place.and_then(|place| self.model.layout().body_of(warning, place));
+    /// Returns to the state before the tick.
+    fn diverge(
+        &mut self,
+        substep: u32,
+        cause: Cause,
+        body: Option<BodyId>,
+        excess: Option<Excess>,
+    ) -> Diverged {
         let before = self.before.clone();
-        self.take_up(&before);
-        let dump = Box::new(Dump::new(&self.model, before));
-        Diverged { tick: self.tick, substep, warning, body, dump }
+        self.load_state(&before);
+        let replay = Box::new(ReplayFile::new(&self.model, before));
+        Diverged { tick: self.tick, substep, cause, body, excess, replay }
     }
 }

@@ -1,5 +1,7 @@
-//! Many characters on all cores. Each is sensed, steered and stepped by one worker, in one go, so that its
-//! memory is hot; nothing is shared, so the number of workers changes no bit of the result.
+//! Many characters on all cores. Nothing is shared between them, so the number of threads changes no bit of the
+//! result.
+
+mod control;
 
 use std::num::NonZeroUsize;
 
@@ -7,10 +9,12 @@ use policy_core::{CharacterState, JointTargets};
 use rayon::prelude::*;
 use rayon::{ThreadPool, ThreadPoolBuilder};
 
-use crate::character::Character;
-use crate::diverged::Diverged;
+use self::control::Batch;
+use crate::character::{Character, Diverged};
 
 /// Characters that are ticked together.
+///
+/// [`Crowd::control_tick`] runs controllers. The other ways to tick are for policies of the caller's own.
 ///
 /// ```
 /// # fn main() -> Result<(), Box<dyn std::error::Error>> {
@@ -22,7 +26,7 @@ use crate::diverged::Diverged;
 /// let mut ticks = vec![0; crowd.len()]; // what each character's controller keeps from tick to tick
 /// let diverged = crowd.tick_with(&mut ticks, |_index, ticks, _state, targets| {
 ///     *ticks += 1;
-///     targets.0[0] = 0.1; // a controller makes targets of the state here
+///     targets[0] = 0.1; // a controller makes targets of the state here
 /// });
 /// assert_eq!((diverged, ticks), (0, vec![1; 4]));
 /// # Ok(())
@@ -31,12 +35,15 @@ use crate::diverged::Diverged;
 #[derive(Debug)]
 pub struct Crowd {
     members: Vec<Member>,
+    batches: Vec<Batch>,
     pool: ThreadPool,
 }
 
+/// A character, and what a tick of it needs.
 #[derive(Debug)]
 struct Member {
     character: Character,
+    targets: JointTargets,
     failure: Option<Diverged>,
 }
 
@@ -53,7 +60,7 @@ pub enum CrowdError {
 }
 
 impl Crowd {
-    /// A crowd of `characters` on `threads`, by default one for every core.
+    /// A crowd of `characters` on `threads`, by default one for every core. Allocates; ticks only where they say.
     ///
     /// # Errors
     /// When the system gives no threads.
@@ -63,8 +70,11 @@ impl Crowd {
             .thread_name(|index| format!("crowd-{index}"))
             .build()
             .map_err(|source| CrowdError::Threads { source })?;
-        let members = characters.into_iter().map(|character| Member { character, failure: None }).collect();
-        Ok(Self { members, pool })
+        let member = |character: Character| {
+            let targets = JointTargets::new(character.model().skeleton());
+            Member { character, targets, failure: None }
+        };
+        Ok(Self { members: characters.into_iter().map(member).collect(), batches: Vec::new(), pool })
     }
 
     /// Number of characters.
@@ -112,13 +122,13 @@ impl Crowd {
         &mut self.members[index].character
     }
 
-    /// Those that diverged in the last tick, with their index. Each is in its state before that tick.
+    /// Characters that diverged in the last tick, with their index. Each is in its state before that tick.
     pub fn diverged(&self) -> impl Iterator<Item = (usize, &Diverged)> {
         self.members.iter().enumerate().filter_map(|(index, member)| Some((index, member.failure.as_ref()?)))
     }
 
-    /// Runs one control tick of every character: `policy` gets its index and state, and changes the targets
-    /// (all zero before) that it is then stepped with. Answers how many diverged.
+    /// Runs one control tick of every character. `policy` gets its index and state, and changes the targets (all
+    /// zero before) that it is then stepped with. Returns how many diverged.
     ///
     /// # Panics
     /// When `policy` does.
@@ -166,7 +176,7 @@ impl Crowd {
         });
     }
 
-    /// Steps every character with its targets. Answers how many diverged.
+    /// Steps every character with its targets. Returns how many diverged.
     ///
     /// # Panics
     /// When there are not as many `targets` as characters.
@@ -178,14 +188,20 @@ impl Crowd {
 
 impl Member {
     fn tick(&mut self, policy: impl FnOnce(&CharacterState, &mut JointTargets)) -> usize {
-        let (mut state, mut targets) = (CharacterState::default(), JointTargets::default());
-        self.character.sense_into(&mut state);
-        policy(&state, &mut targets);
-        self.step(&targets)
+        self.character.sense();
+        self.targets.fill(0.0);
+        policy(self.character.sensed(), &mut self.targets);
+        self.character.actuate(&self.targets);
+        self.finish()
     }
 
-    fn step(&mut self, targets: &JointTargets) -> usize {
+    fn step(&mut self, targets: &[f32]) -> usize {
         self.character.actuate(targets);
+        self.finish()
+    }
+
+    /// Steps with the targets that are set. Returns 1 when it diverged.
+    fn finish(&mut self) -> usize {
         self.failure = self.character.step().err();
         usize::from(self.failure.is_some())
     }

@@ -1,60 +1,57 @@
-//! The humanoid of policy-core in MuJoCo: sense, actuate, step, save and restore.
+//! Characters of policy-core in MuJoCo: sense, actuate, step, save and restore, one or many.
 //!
-//! A [`Model`] is immutable and shared by any number of characters; a [`Character`] is the mutable state of
-//! one body. SI units, world space, z up. MuJoCo writes quaternions wxyz and glam xyzw: the change is made
-//! in this crate and nowhere else.
+//! A [`Model`] is an immutable description: body, ground, skeleton. Any number of characters share it. A
+//! [`Character`] is the mutable state of one body. A [`Crowd`] steps many of them on all cores. The modules are
+//! layered in this order and import downwards only.
 //!
-//! MuJoCo's messages go to a handler that is installed when the first model is loaded, so nothing is
-//! printed and no file is written into the working folder. A program that also uses mujoco-rs by itself
-//! loads its first [`Model`] before it starts threads.
+//! ```
+//! # fn main() -> Result<(), Box<dyn std::error::Error>> {
+//! use std::sync::Arc;
+//! use physics_bridge::{Character, Model};
+//! use policy_core::{CharacterPack, Command, Controller, Goal, glam::Vec2};
+//!
+//! # let root = concat!(env!("CARGO_MANIFEST_DIR"), "/../../assets");
+//! # let pack = CharacterPack::from_bytes(&std::fs::read(format!("{root}/humanoid.pack.safetensors"))?)?;
+//! # let mjcf = std::fs::read_to_string(format!("{root}/humanoid.xml"))?;
+//! // `Model::for_pack(&pack)` suffices when the pack holds its MJCF.
+//! let model = Model::from_mjcf_with_skeleton(&mjcf, pack.skeleton().clone())?;
+//! let walk = pack.graph().node_named("walk").expect("the humanoid walks");
+//! let mut controller = Controller::new(Arc::new(pack));
+//! let mut character = Character::new(&model);
+//! for _ in 0..90 {
+//!     let target = Some(Vec2::new(10.0, 0.0));
+//!     let command = Command { target, goal: Goal::Node(walk), ..Command::default() };
+//!     character.control_tick(&mut controller, &command, 1.0 / model.control_hz())?;
+//! }
+//! assert!(character.centre_of_mass().x > 1.0, "it has walked a metre in three seconds");
+//! # Ok(())
+//! # }
+//! ```
+//!
+//! # Conventions
+//! SI units, radians, world space with z up. MuJoCo writes quaternions wxyz and glam xyzw: this crate alone converts
+//! them. Bodies and hinges are in the order of the skeleton.
+//!
+//! # MuJoCo's messages
+//! They go to a handler that is installed when the first model is loaded. Nothing is printed and no file is written
+//! into the working folder. A program that also uses mujoco-rs by itself loads its first [`Model`] before it starts
+//! threads.
 
 mod character;
-mod contact;
 mod crowd;
-mod diverged;
-mod dump;
-mod ground;
-mod ground_kind;
-mod history;
-mod layout;
-mod logging;
-mod mjcf;
-mod model;
-mod model_error;
-mod pose;
-mod push;
-mod sense;
-mod set_up;
-mod settings;
-mod shape;
-mod snapshot;
-mod terrain;
+mod description;
 
-pub use character::Character;
-pub use contact::Contact;
+pub use character::{
+    Cause, Character, Contact, Diverged, Excess, HISTORY_SECS, MAX_DEPTH_M, MAX_DISTANCE_M, MAX_PUSHED_MPS,
+    MAX_SPEED_MPS, MAX_SPIN_RADPS, ModelMismatch, NotRecorded, PushError, ReplayFile, ReplayFileError,
+    Snapshot, SnapshotMismatch, StateHash, WALKING_START_MPS,
+};
 pub use crowd::{Crowd, CrowdError};
-pub use diverged::{Diverged, Warning};
-pub use dump::{Dump, DumpError};
-pub use ground::HeightField;
-pub use ground_kind::GroundKind;
-pub use history::{HISTORY_SECS, NotRecorded};
-pub use model::Model;
-pub use model_error::ModelError;
-pub use pose::{BodyPoses, Pose, PoseError};
-pub use push::PushError;
-pub use set_up::{ModelMismatch, WALKING_START_MPS};
-pub use settings::Settings;
-pub use shape::{Shape, ShapeKind};
-pub use snapshot::{Snapshot, SnapshotMismatch};
-pub use terrain::Terrain;
-
-/// Control ticks per second.
-pub const CONTROL_HZ: u32 = 30;
-
-/// Numbers in `qpos`: position (3) and rotation (4, wxyz) of the pelvis, then the 28 hinges in the order of
-/// [`policy_core::JOINT_NAMES`].
-pub const QPOS_LEN: usize = 7 + policy_core::DOF_COUNT;
-
-/// Numbers in `qvel`: linear velocity of the pelvis in world axes (3), its angular velocity in its own axes
-/// (3), then the 28 hinges in the order of [`policy_core::JOINT_NAMES`].
-pub const QVEL_LEN: usize = 6 + policy_core::DOF_COUNT;
+pub use description::ground::HeightField;
+pub use description::ground_kind::GroundKind;
+pub use description::model::{CONTROL_HZ, Model};
+pub use description::model_error::ModelError;
+pub use description::pose::{BodyPoses, Pose, PoseError};
+pub use description::settings::Settings;
+pub use description::shape::{Shape, ShapeKind};
+pub use description::terrain::Terrain;

@@ -5,7 +5,7 @@ mod common;
 use std::num::NonZeroUsize;
 
 use common::{hash, humanoid, wriggle};
-use physics_bridge::{Character, Crowd, Warning};
+use physics_bridge::{Cause, Character, Crowd};
 use policy_core::{CharacterState, Heading, JointTargets};
 
 const COUNT: usize = 11;
@@ -94,8 +94,8 @@ fn one_that_diverges_leaves_the_others_alone() {
         }
     });
     assert_eq!(diverged, 1);
-    let failures: Vec<_> = crowd.diverged().map(|(index, error)| (index, error.warning)).collect();
-    assert_eq!(failures, [(4, Warning::BadControl)]);
+    let failures: Vec<_> = crowd.diverged().map(|(index, error)| (index, error.cause)).collect();
+    assert_eq!(failures, [(4, Cause::BadControl)]);
     assert_eq!(other.tick(|_, _, _| ()), 0);
     for (index, (a, b)) in hashes(&crowd).into_iter().zip(hashes(&other)).enumerate() {
         assert_eq!(a == b, index != 4, "character {index}");

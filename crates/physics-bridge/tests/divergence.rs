@@ -2,8 +2,9 @@
 
 mod common;
 
-use common::{hash, humanoid, run};
-use physics_bridge::{Character, Diverged, Dump, Warning};
+use common::{HUMANOID, hash, humanoid, run};
+use glam::Vec3;
+use physics_bridge::{Cause, Character, Diverged, Dump, MAX_DEPTH_M, MAX_SPEED_MPS, Model, Settings};
 use policy_core::{Body, JOINT_NAMES, JointTargets};
 
 fn index(joint: &str) -> usize {
@@ -35,7 +36,7 @@ fn too_fast() -> Character {
 #[test]
 fn a_target_that_is_no_number_is_named() {
     let (character, error, before) = nan_in_the_knee();
-    assert_eq!(error.warning, Warning::BadControl);
+    assert_eq!(error.cause, Cause::BadControl);
     assert_eq!((error.tick, error.substep, error.body), (5, 0, Some(Body::LeftShin)));
     let words = error.to_string();
     assert!(words.contains("tick 5") && words.contains("left_shin"), "{words}");
@@ -60,7 +61,7 @@ fn motion_that_is_too_fast_is_caught_again_and_again() {
     for _ in 0..3 {
         let error = character.step().unwrap_err();
         let expected =
-            matches!(error.warning, Warning::BadPosition | Warning::BadVelocity | Warning::BadAcceleration);
+            matches!(error.cause, Cause::BadPosition | Cause::BadVelocity | Cause::BadAcceleration);
         assert!(expected && error.body.is_some(), "{error}");
         assert_eq!(hash(&character), before);
     }
@@ -80,7 +81,7 @@ fn the_dump_diverges_in_the_same_way() {
         error.dump.save(&path).unwrap();
         let mut replayed = Dump::load(&path).unwrap().to_character().unwrap();
         let again = replayed.step().unwrap_err();
-        assert_eq!(again.warning, error.warning);
+        assert_eq!(again.cause, error.cause);
         assert_eq!((again.tick, again.substep, again.body), (error.tick, error.substep, error.body));
         assert_eq!(again.dump.to_bytes(), error.dump.to_bytes());
     }
@@ -97,4 +98,99 @@ fn a_diverged_tick_is_not_recorded() {
     assert_eq!(character.history_len(), 6);
     character.rewind_to(0).unwrap();
     assert_eq!(hash(&character), newest);
+}
+
+/// A character posed in a way that no character can move, and the cause that its step must name.
+fn implausible() -> Vec<(Cause, Character)> {
+    let posed = |change: &dyn Fn(&mut physics_bridge::Pose)| {
+        let mut character = Character::new(&humanoid());
+        let mut pose = character.pose();
+        change(&mut pose);
+        character.set_pose(&pose.qpos, &pose.qvel).unwrap();
+        character
+    };
+    vec![
+        (Cause::TooFast, posed(&|pose| pose.qvel[0] = 60.0)),
+        (Cause::TooFast, posed(&|pose| (pose.qpos[2], pose.qvel[2]) = (100.0, 51.0))),
+        (Cause::SpinsTooFast, posed(&|pose| (pose.qpos[2], pose.qvel[5]) = (5.0, 400.0))),
+        (Cause::TooFarAway, posed(&|pose| pose.qpos[1] = -20_000.0)),
+        (Cause::TooFarAway, posed(&|pose| pose.qpos[2] = 11_000.0)),
+    ]
+}
+
+#[test]
+fn motion_that_no_body_makes_is_a_divergence() {
+    for (cause, mut character) in implausible() {
+        let before = hash(&character);
+        let error = character.step().unwrap_err();
+        assert_eq!((error.cause, error.tick), (cause, 0), "{error}");
+        assert!(error.body.is_some(), "{error}");
+        let excess = error.excess.unwrap();
+        assert!(excess.value > excess.limit, "{error}");
+        let words = error.to_string();
+        assert!(words.contains("pelvis") && words.contains(&excess.limit.to_string()), "{words}");
+        assert_eq!(hash(&character), before, "the character is back where it was");
+        let again = Dump::from_bytes(&error.dump.to_bytes()).unwrap().to_character().unwrap().step();
+        assert_eq!(again.unwrap_err().cause, cause);
+        character.stand_at(0.0, 0.0, policy_core::Heading::FORWARD, 0.0).unwrap();
+        run(&mut character, 3);
+    }
+}
+
+/// A character that touches nothing falls through the ground.
+#[test]
+fn falling_through_the_ground_is_a_divergence() {
+    let solid = "contype=\"1\" conaffinity=\"0\"/>";
+    assert!(HUMANOID.contains(solid));
+    let ghost = Model::from_mjcf(&HUMANOID.replacen(solid, "contype=\"0\" conaffinity=\"0\"/>", 1)).unwrap();
+    let mut character = Character::new(&ghost);
+    let error = (0..60).find_map(|_| character.step().err()).expect("it falls through");
+    assert_eq!(error.cause, Cause::BelowGround, "{error}");
+    let excess = error.excess.unwrap();
+    assert!((MAX_DEPTH_M..MAX_DEPTH_M + 0.3).contains(&excess.value), "caught within a tick: {error}");
+}
+
+/// A shove that is repeated before the last one has worn off drove a character to a thousand kilometres a
+/// second before there was a bound.
+#[test]
+fn repeated_shoves_do_not_add_up() {
+    for (force, every) in [(1200.0, 10), (1200.0, 1), (20_000.0, 3)] {
+        let mut character = Character::new(&humanoid());
+        let mut diverged = 0;
+        for tick in 0..1800 {
+            if tick % every == 0 {
+                character.push(Body::Torso, Vec3::X * force, 0.2).unwrap();
+                assert!(character.is_pushed(Body::Torso));
+            }
+            if character.step().is_err() {
+                diverged += 1;
+                let pose = character.pose();
+                let (x, y) = (pose.qpos[0] as f32, pose.qpos[1] as f32);
+                character.stand_at(x, y, policy_core::Heading::FORWARD, 0.0).unwrap();
+            }
+            let speed = Body::ALL.map(|body| character.speed_of(body)).into_iter().fold(0.0, f32::max);
+            assert!(speed <= MAX_SPEED_MPS, "{speed} m/s at tick {tick}");
+        }
+        assert!(diverged < 10 || force > 1200.0, "{diverged} divergences under {force} N");
+    }
+}
+
+#[test]
+fn a_push_drives_a_body_only_so_fast() {
+    let weightless = Settings { gravity: 0.0, strength: 0.0, ..Settings::default() };
+    let model = humanoid().with_settings(weightless).unwrap();
+    let speeds = [100.0, 1000.0].map(|force| {
+        let mut character = Character::new(&model);
+        let mut pose = character.pose();
+        pose.qpos[2] += 100.0;
+        character.set_pose(&pose.qpos, &pose.qvel).unwrap();
+        character.push(Body::Pelvis, Vec3::X * force, 60.0).unwrap();
+        for _ in 0..900 {
+            character.step().unwrap();
+        }
+        character.impulse(Body::Pelvis, Vec3::X * 1000.0).unwrap();
+        character.step().unwrap();
+        character.centre_of_mass_velocity().x
+    });
+    assert!(speeds.iter().all(|speed| (15.0..22.0).contains(speed)), "{speeds:?}");
 }

@@ -116,7 +116,7 @@ fn options_that_cannot_be_stepped_are_refused() {
     assert_says(&refused("timestep=\"0.00833333\"", "timestep=\"0.0123\""), &["timestep", "0.0123"]);
     assert_says(&refused("integrator=\"implicitfast\"", "integrator=\"RK4\""), &["integrator", "RK4"]);
     assert_says(&refused("memory=\"4M\"", "memory=\"10K\""), &["memory", "10240"]);
-    assert_says(&refused("memory=\"4M\"", "memory=\"4G\""), &["memory", "4294967296"]);
+    assert_says(&refused("memory=\"4M\"", "memory=\"4G\""), &["line 3", "memory", "4294967296"]);
 }
 
 #[test]
@@ -125,4 +125,91 @@ fn a_keyframe_that_is_no_pose_is_refused() {
         let error = refused("qpos=\"0 0 0.87", &format!("qpos=\"0 0 {bad}"));
         assert!(error.contains("stand") || error.contains("line"), "{bad}: {error}");
     }
+}
+
+/// The humanoid with something put in place of its light, which is on line 43.
+fn with_element(element: &str) -> Result<Model, String> {
+    let light = HUMANOID.lines().find(|line| line.contains("<light")).unwrap();
+    Model::from_mjcf(&HUMANOID.replacen(light, element, 1)).map_err(|error| error.to_string())
+}
+
+/// The humanoid with something in front of its `worldbody`, on line 41.
+fn with_section(section: &str) -> Result<Model, String> {
+    Model::from_mjcf(&HUMANOID.replacen("<worldbody>", &format!("{section}<worldbody>"), 1))
+        .map_err(|error| error.to_string())
+}
+
+#[test]
+fn text_that_asks_for_files_never_reaches_mujoco() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("secret.xml");
+    std::fs::write(&path, "<mujoco><geom name='secret' size='1'/></mujoco>").unwrap();
+    let path = path.display();
+    let sections = [
+        format!("<include file='{path}'/>"),
+        format!("< include\tfile = '{path}'/>"),
+        format!("<asset><mesh name='m' file='{path}'/></asset>"),
+        format!("<asset><hfield name='h' file='{path}' size='1 1 1 1'/></asset>"),
+        format!("<asset><texture name='t' type='skybox' fileup='{path}'/></asset>"),
+        format!("<asset><model name='m' file='{path}'/></asset>"),
+        format!("<deformable><skin file='{path}'/></deformable>"),
+        "<extension><plugin plugin='mujoco.sdf.torus'/></extension>".into(),
+    ];
+    for section in &sections {
+        let error = with_section(section).unwrap_err();
+        assert_says(&error, &["line 41", "stands alone"]);
+        assert!(!error.contains("secret"), "{error}");
+    }
+    let robot = format!("<robot name='r'><link name='l'/><mesh filename='{path}'/></robot>");
+    assert_says(&Model::from_mjcf(&robot).unwrap_err().to_string(), &["line 1", "mujoco"]);
+}
+
+#[test]
+fn sizes_that_exhaust_memory_or_time_never_reach_mujoco() {
+    let start = std::time::Instant::now();
+    let asset = |text: &str| with_section(&format!("<asset>{text}</asset>"));
+    let replicate = |count: &str| {
+        with_element(&format!("<replicate count='{count}' offset='1 0 0'><geom size='.1'/></replicate>"))
+    };
+    let errors = [
+        (asset("<hfield name='h' nrow='100000' ncol='100000' size='1 1 1 1'/>"), "nrow"),
+        (asset("<texture type='2d' builtin='checker' width='100000' height='100000'/>"), "width"),
+        (asset("<texture type='cube' builtin='checker' width='4000' height='24000'/>"), "bytes"),
+        (asset("<mesh name='m' builtin='sphere' params='1000'/>"), "params"),
+        (replicate("1000000000"), "count"),
+        (replicate("1e9"), "count"),
+        (replicate("nan"), "count"),
+        (replicate("&#49;000000000"), "character references"),
+        (
+            with_element(
+                "<replicate count='1000' offset='1 0 0'><replicate count='1000' offset='0 1 0'>\
+                 <geom size='.1'/></replicate></replicate>",
+            ),
+            "copies",
+        ),
+        (with_element(&"<geom size='.1'/>".repeat(5000)), "elements"),
+        (with_element("<body><flexcomp name='f' type='grid' count='1000 1000 1000'/></body>"), "elements"),
+        (with_section("<custom><numeric name='n' size='1000000000'/></custom>"), "size"),
+        (with_section("<size nuserdata='1000000000'/>"), "nuserdata"),
+        (with_section("<size nkey='1000000000'/>"), "nkey"),
+        (with_section("<size memory='100T'/>"), "memory"),
+        (with_section("<sensor><user dim='1000000000'/></sensor>"), "dim"),
+        (with_section("<option tolerance='0' iterations='1000000000'/>"), "iterations"),
+        (with_section("<actuator><muscle joint='neck_x'/></actuator>"), "muscle"),
+        (with_element(&("<body>".repeat(200) + &"</body>".repeat(200))), "nesting"),
+    ];
+    for (result, word) in errors {
+        assert_says(&result.unwrap_err(), &["line 4", word]);
+    }
+    let long = format!("{HUMANOID}<!-- {} -->", "a".repeat(5 << 20));
+    assert_says(&Model::from_mjcf(&long).unwrap_err().to_string(), &["bytes", "4194304"]);
+    assert!(start.elapsed().as_secs() < 5, "{:?}", start.elapsed());
+}
+
+#[test]
+fn sensible_sizes_still_load() {
+    with_section("<asset><texture name='t' type='2d' builtin='checker' width='512' height='512'/></asset>")
+        .unwrap();
+    with_element("<replicate count='4' offset='5 0 0'><geom size='.1' pos='50 0 0'/></replicate>").unwrap();
+    with_section("<size nkey='2'/>").unwrap();
 }

@@ -147,6 +147,24 @@ fn without_strength_it_collapses() {
 }
 
 #[test]
+fn a_heavier_body_presses_harder_and_falls_as_fast() {
+    let model = with(|s| s.mass = 1.5);
+    let mass = humanoid().mass_kg() * 1.5;
+    assert!((model.mass_kg() - mass).abs() < 1e-6 * mass, "{} kg, expected {mass}", model.mass_kg());
+    let mut standing = Character::new(&model);
+    (0..15).for_each(|_| standing.step().unwrap());
+    let total: Vec3 = standing.contacts().iter().map(|c| c.force).sum();
+    let weight = mass as f32 * G;
+    assert!((total.z - weight).abs() < 0.1 * weight, "{total} newtons for {weight}");
+    let mut falling = afloat(&model);
+    (0..15).for_each(|_| falling.step().unwrap());
+    assert!((falling.centre_of_mass_velocity().z + G * 0.5).abs() < 2e-3);
+    let same = model.with_settings(Settings::default()).unwrap();
+    assert_eq!(same.mass_kg(), humanoid().mass_kg());
+    assert!(humanoid().with_settings(Settings { mass: 0.1, ..Settings::default() }).is_err());
+}
+
+#[test]
 fn settings_change_under_way_and_back() {
     let model = humanoid();
     let moon = with(|s| s.gravity = 0.165);

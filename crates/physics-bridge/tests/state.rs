@@ -105,7 +105,7 @@ fn the_same_run_gives_the_same_hash() {
 #[test]
 fn a_dump_goes_through_a_file_bit_for_bit() {
     let terrain = Terrain::Wavy { height_m: 0.2, wavelength_m: 3.0, seed: 5 };
-    let settings = Settings { gravity: 0.9, friction: 0.7, strength: 1.1 };
+    let settings = Settings { gravity: 0.9, friction: 0.7, strength: 1.1, mass: 0.9 };
     let model = humanoid().with_terrain(terrain).unwrap().with_settings(settings).unwrap();
     let mut character = Character::new(&model);
     run(&mut character, 20);

@@ -4,7 +4,12 @@
 use std::hint::black_box;
 
 use criterion::{BatchSize, Criterion, criterion_group, criterion_main};
-use policy_core::{Arithmetic, BatchScratch, Blend, Layer, Mlp, MlpScratch, evaluate_batch_into};
+use policy_core::training::Layer;
+use policy_core::{Arithmetic, BatchScratch, Blend, Mlp, MlpScratch, PolicyId, evaluate_batch_into};
+
+fn p(index: usize) -> PolicyId {
+    PolicyId::new(index)
+}
 
 const SIZES: [usize; 4] = [225, 128, 32, 28];
 const CROWD: usize = 256;
@@ -38,7 +43,7 @@ fn benches(c: &mut Criterion) {
             });
         });
     }
-    let blend = Blend::between(0, 1, 0.3);
+    let blend = Blend::between(p(0), p(1), 0.3);
     c.bench_function("fused", |b| {
         b.iter(|| {
             blend.evaluate_into(&policies, arithmetic, black_box(&input), &mut scratch, black_box(&mut out));
@@ -58,8 +63,8 @@ fn benches(c: &mut Criterion) {
     let mut batch = BatchScratch::for_mlp(&policies[0], CROWD);
     // Three in four characters rest on a policy, the others are on their way between two.
     let moving: Vec<Blend> =
-        (0..CROWD).map(|i| Blend::between(i % 3, i % 3 + 1, (noise(&mut seed) + 1.0) * 0.5)).collect();
-    let resting: Vec<Blend> = (0..CROWD).map(|i| Blend::single(i % 4)).collect();
+        (0..CROWD).map(|i| Blend::between(p(i % 3), p(i % 3 + 1), (noise(&mut seed) + 1.0) * 0.5)).collect();
+    let resting: Vec<Blend> = (0..CROWD).map(|i| Blend::single(p(i % 4))).collect();
     for (name, blends) in [("batched", &moving), ("batched_resting", &resting)] {
         for (kind, arithmetic) in [("", Arithmetic::Fused), ("_reproducible", Arithmetic::Reproducible)] {
             c.bench_function(&format!("{name}{kind}"), |b| {

@@ -12,12 +12,12 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         println!("policy {:12} {} parameters", node.name, policy.parameter_count());
     }
     for edge in pack.graph().edges() {
-        let [a, b] = edge.nodes.map(|n| &pack.graph().nodes()[n].name);
+        let [a, b] = edge.nodes.map(|n| &pack.graph().node(n).name);
         println!("edge   {a} - {b}: distance {:.2}, {} s", edge.distance, edge.seconds);
     }
     for path in pack.graph().paths() {
-        let names: Vec<&str> = path.nodes.iter().map(|&n| pack.graph().nodes()[n].name.as_str()).collect();
-        println!("path   {:12} {}", path.name, names.join(" - "));
+        let names: Vec<&str> = path.nodes().iter().map(|&n| pack.graph().node(n).name.as_str()).collect();
+        println!("path   {:12} {}", path.name(), names.join(" - "));
     }
     for skill in pack.skills() {
         println!("skill  {:12} at most {} s", skill.name, skill.end.limit_seconds);

@@ -1,13 +1,15 @@
-//! From a policy's 28 normalised numbers to joint targets in radians.
+//! From a policy's normalised numbers to joint targets in radians.
 
-use crate::body::DOF_COUNT;
+use alloc::vec::Vec;
+
+use crate::skeleton::Skeleton;
 use crate::state::JointTargets;
 
 /// Per joint: `target = centre + gain * action`, radians.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ActionScaling {
-    centre: [f32; DOF_COUNT],
-    gain: [f32; DOF_COUNT],
+    centre: Vec<f32>,
+    gain: Vec<f32>,
 }
 
 /// Why an [`ActionScaling`] can't be made.
@@ -26,64 +28,74 @@ pub enum ActionScalingError {
         /// Its gain, radians.
         gain: f32,
     },
+    /// There are more or fewer gains than centres.
+    #[error("expected as many gains as centres ({centres}), found {gains}")]
+    Count {
+        /// Number of centres.
+        centres: usize,
+        /// Number of gains.
+        gains: usize,
+    },
 }
 
 impl ActionScaling {
     /// Scaling with the given centre and gain of each joint, radians.
     ///
     /// # Errors
-    /// When a number is not finite or a gain is not positive.
-    pub fn from_centre_and_gain(
-        centre: [f32; DOF_COUNT],
-        gain: [f32; DOF_COUNT],
-    ) -> Result<Self, ActionScalingError> {
-        for joint in 0..DOF_COUNT {
-            let (c, g) = (centre[joint], gain[joint]);
+    /// When the lengths differ, a number is not finite or a gain is not positive.
+    pub fn from_centre_and_gain(centre: &[f32], gain: &[f32]) -> Result<Self, ActionScalingError> {
+        if centre.len() != gain.len() {
+            return Err(ActionScalingError::Count { centres: centre.len(), gains: gain.len() });
+        }
+        for (joint, (&c, &g)) in centre.iter().zip(gain).enumerate() {
             if !c.is_finite() || !g.is_finite() || g <= 0.0 {
                 return Err(ActionScalingError::Number { joint, centre: c, gain: g });
             }
         }
-        Ok(Self { centre, gain })
+        Ok(Self { centre: centre.into(), gain: gain.into() })
     }
 
-    /// Scaling from joint limits in radians, as in AMP: elbows and knees about the middle of their range,
-    /// `1.2 * half_range`; the other joints about zero, `min(1.2 * max(|low|, |high|), pi)`.
-    ///
-    /// # Errors
-    /// When a limit is not finite or a range is empty.
-    pub fn from_joint_limits(
-        low: [f32; DOF_COUNT],
-        high: [f32; DOF_COUNT],
-    ) -> Result<Self, ActionScalingError> {
-        let (mut centre, mut gain) = ([0.0; DOF_COUNT], [0.0; DOF_COUNT]);
-        for (joint, name) in crate::body::JOINT_NAMES.iter().enumerate() {
-            let (lo, hi) = (low[joint], high[joint]);
-            if name.ends_with("elbow") || name.ends_with("knee") {
-                centre[joint] = 0.5 * (lo + hi);
-                gain[joint] = 1.2 * 0.5 * (hi - lo);
+    /// Scaling from the ranges of a skeleton's joints, as in AMP. A joint that bends to one side only, such as a knee,
+    /// turns about the middle of its range by `1.2 * half_range`; the others about zero by
+    /// `min(1.2 * max(|low|, |high|), pi)`.
+    #[must_use]
+    pub fn from_skeleton(skeleton: &Skeleton) -> Self {
+        let scaled = |[low, high]: [f32; 2]| {
+            if low >= 0.0 || high <= 0.0 {
+                (0.5 * (low + high), 1.2 * 0.5 * (high - low))
             } else {
-                gain[joint] = (1.2 * lo.abs().max(hi.abs())).min(core::f32::consts::PI);
+                (0.0, (1.2 * low.abs().max(high.abs())).min(core::f32::consts::PI))
             }
-        }
-        Self::from_centre_and_gain(centre, gain)
+        };
+        let (centre, gain) = skeleton.joints().iter().map(|joint| scaled(joint.range)).unzip();
+        Self { centre, gain }
     }
 
     /// Centre of each joint, radians.
     #[must_use]
-    pub fn centre(&self) -> &[f32; DOF_COUNT] {
+    pub fn centre(&self) -> &[f32] {
         &self.centre
     }
 
     /// Gain of each joint, radians.
     #[must_use]
-    pub fn gain(&self) -> &[f32; DOF_COUNT] {
+    pub fn gain(&self) -> &[f32] {
         &self.gain
     }
 
-    /// Writes the joint targets of an action. Any finite action is allowed; [-1, 1] is the usual range.
-    pub fn targets_into(&self, action: &[f32; DOF_COUNT], out: &mut JointTargets) {
-        for (joint, target) in out.0.iter_mut().enumerate() {
-            *target = self.centre[joint] + self.gain[joint] * action[joint];
+    /// Writes the joint targets of an action. Any finite action is allowed; [-1, 1] is the usual range. Does not allocate.
+    ///
+    /// # Panics
+    /// When `action` or `out` has another length than the scaling.
+    pub fn targets_into(&self, action: &[f32], out: &mut JointTargets) {
+        assert_eq!(
+            (action.len(), out.len()),
+            (self.centre.len(), self.centre.len()),
+            "joints of the scaling"
+        );
+        for (((target, centre), gain), action) in out.iter_mut().zip(&self.centre).zip(&self.gain).zip(action)
+        {
+            *target = centre + gain * action;
         }
     }
 }
@@ -94,18 +106,23 @@ mod tests {
 
     #[test]
     fn knees_turn_about_their_middle_and_hips_about_zero() {
-        let (mut low, mut high) = ([-1.0; DOF_COUNT], [0.5; DOF_COUNT]);
-        let knee = crate::JOINT_NAMES.iter().position(|n| *n == "left_knee").unwrap();
-        (low[knee], high[knee]) = (0.0, 2.0);
-        let scaling = ActionScaling::from_joint_limits(low, high).unwrap();
-        let mut targets = JointTargets::default();
-        scaling.targets_into(&[0.5; DOF_COUNT], &mut targets);
-        assert!((targets.0[knee] - 1.6).abs() < 1e-6);
-        assert!((targets.0[0] - 0.6).abs() < 1e-6);
+        let skeleton = Skeleton::humanoid();
+        let joint = |name: &str| skeleton.joint_named(name).unwrap().index();
+        let scaling = ActionScaling::from_skeleton(&skeleton);
+        let mut targets = JointTargets::new(&skeleton);
+        scaling.targets_into(&[0.5; 28], &mut targets);
+        let degrees = |name: &str| targets[joint(name)].to_degrees();
+        assert!((degrees("left_knee") - (80.0 + 0.5 * 96.0)).abs() < 1e-4);
+        assert!((degrees("right_elbow") - (-80.0 + 0.5 * 96.0)).abs() < 1e-4);
+        assert!((degrees("abdomen_x") - 0.5 * 72.0).abs() < 1e-4);
     }
 
     #[test]
-    fn an_empty_range_is_refused() {
-        assert!(ActionScaling::from_joint_limits([0.0; DOF_COUNT], [0.0; DOF_COUNT]).is_err());
+    fn bad_numbers_are_refused() {
+        use ActionScalingError::{Count, Number};
+        let made = ActionScaling::from_centre_and_gain;
+        assert!(matches!(made(&[0.0, 0.0], &[1.0, 0.0]), Err(Number { joint: 1, .. })));
+        assert!(matches!(made(&[f32::NAN], &[1.0]), Err(Number { joint: 0, .. })));
+        assert!(matches!(made(&[0.0], &[]), Err(Count { centres: 1, gains: 0 })));
     }
 }

@@ -75,7 +75,7 @@ pub fn evaluate_batch_into(
 
 /// One bit for each policy of the blend; policies beyond the 64th share bits, which costs time only.
 fn policies_used(blend: &Blend) -> u64 {
-    blend.terms().iter().fold(0, |set, term| set | 1u64.rotate_left(term.policy as u32))
+    blend.terms().iter().fold(0, |set, term| set | 1u64.rotate_left(term.policy.index() as u32))
 }
 
 struct Group<'a> {
@@ -127,7 +127,7 @@ impl Group<'_> {
         let mut weights = [[0.0f32; BLOCK]; GROUP];
         let mut used = false;
         for (at, &(_, character)) in self.members.iter().enumerate() {
-            let terms = self.blends[character as usize].active(layer).filter(|(p, _)| *p == policy);
+            let terms = self.blends[character as usize].active(layer).filter(|(p, _)| p.index() == policy);
             let weight: f32 = terms.map(|(_, w)| w).sum();
             weights[at / BLOCK][at % BLOCK] = weight;
             used |= weight != 0.0;

@@ -4,6 +4,7 @@
 //! weighted sum of the policies' layers: the blend is evaluated without being built (paper, section 3.3;
 //! per layer, section 4.3).
 
+use crate::ids::PolicyId;
 use crate::kernel::{Arithmetic, add_scaled_rows, relu, scale_rows};
 use crate::mlp::{MAX_LAYERS, Mlp, MlpScratch};
 
@@ -13,8 +14,8 @@ pub const MAX_BLEND_TERMS: usize = 8;
 /// One policy's part in a blend.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct BlendTerm {
-    /// Index of the policy among those the blend is evaluated with.
-    pub policy: usize,
+    /// The policy among those the blend is evaluated with.
+    pub policy: PolicyId,
     /// Blend weight in each layer, first to last; layers the policy lacks are ignored. Usually in [0, 1] with
     /// a sum of 1 over the terms, but any finite number extrapolates. A weight of 0 costs nothing.
     pub weights: [f32; MAX_LAYERS],
@@ -41,7 +42,7 @@ pub struct BlendFull;
 impl Blend {
     /// One policy alone.
     #[must_use]
-    pub fn single(policy: usize) -> Self {
+    pub fn single(policy: PolicyId) -> Self {
         let mut blend = Self::default();
         blend.terms[0] = BlendTerm { policy, weights: [1.0; MAX_LAYERS] };
         blend.len = 1;
@@ -50,13 +51,13 @@ impl Blend {
 
     /// `t` of the way from one policy to another in all layers: the paper's main mode.
     #[must_use]
-    pub fn between(from: usize, to: usize, t: f32) -> Self {
+    pub fn between(from: PolicyId, to: PolicyId, t: f32) -> Self {
         Self::between_per_layer(from, to, [t; MAX_LAYERS])
     }
 
     /// A way from one policy to another that differs from layer to layer: the paper's section 4.3.
     #[must_use]
-    pub fn between_per_layer(from: usize, to: usize, t: [f32; MAX_LAYERS]) -> Self {
+    pub fn between_per_layer(from: PolicyId, to: PolicyId, t: [f32; MAX_LAYERS]) -> Self {
         if from == to || t == [0.0; MAX_LAYERS] {
             return Self::single(from);
         }
@@ -89,7 +90,7 @@ impl Blend {
 
     /// The policy, if the blend is one policy alone with weight 1.
     #[must_use]
-    pub fn as_single(&self) -> Option<usize> {
+    pub fn as_single(&self) -> Option<PolicyId> {
         match self.terms() {
             [term] if term.weights == [1.0; MAX_LAYERS] => Some(term.policy),
             _ => None,
@@ -98,14 +99,14 @@ impl Blend {
 
     /// The term with the greatest blend weight over all layers; `None` when the blend is empty.
     #[must_use]
-    pub fn strongest(&self) -> Option<usize> {
+    pub fn strongest(&self) -> Option<PolicyId> {
         let total = |t: &BlendTerm| t.weights.iter().sum::<f32>();
         let best = self.terms().iter().max_by(|a, b| total(a).total_cmp(&total(b)));
         best.map(|term| term.policy)
     }
 
     /// Terms with a weight other than 0 in `layer`.
-    pub(crate) fn active(&self, layer: usize) -> impl Iterator<Item = (usize, f32)> + '_ {
+    pub(crate) fn active(&self, layer: usize) -> impl Iterator<Item = (PolicyId, f32)> + '_ {
         self.terms().iter().map(move |t| (t.policy, t.weights[layer])).filter(|(_, w)| *w != 0.0)
     }
 
@@ -123,9 +124,9 @@ impl Blend {
         scratch: &mut MlpScratch,
         out: &mut [f32],
     ) {
-        let first = &policies[self.terms()[0].policy];
+        let first = &policies[self.terms()[0].policy.index()];
         if let Some(policy) = self.as_single() {
-            return policies[policy].evaluate_into(arithmetic, input, scratch, out);
+            return policies[policy.index()].evaluate_into(arithmetic, input, scratch, out);
         }
         first.assert_lengths(input, out);
         let MlpScratch { front, back } = scratch;
@@ -135,7 +136,7 @@ impl Blend {
             let y = &mut front[..shape.padded_outputs()];
             y.fill(0.0);
             for (policy, weight) in self.active(i) {
-                let layer = &policies[policy].layers()[i];
+                let layer = &policies[policy.index()].layers()[i];
                 assert_eq!(layer.outputs(), shape.outputs(), "blended policies have one shape");
                 arithmetic.layer_add(x, &layer.weight, &layer.bias, weight, y.as_chunks_mut().0);
             }
@@ -154,19 +155,23 @@ impl Blend {
     /// # Panics
     /// When the blend is empty or names a policy that is not there, or when the shapes differ.
     pub fn parameters_into(&self, policies: &[Mlp], out: &mut Mlp) {
-        assert!(policies[self.terms()[0].policy].same_shape(out), "blended policies have one shape");
+        assert!(policies[self.terms()[0].policy.index()].same_shape(out), "blended policies have one shape");
         for (i, layer) in out.layers_mut().iter_mut().enumerate() {
             let mut first = true;
             for (policy, weight) in self.active(i) {
-                let source = &policies[policy].layers()[i];
+                let source = &policies[policy.index()].layers()[i];
                 let write = if first { scale_rows } else { add_scaled_rows };
                 write(weight, &source.weight, &mut layer.weight);
                 write(weight, &source.bias, &mut layer.bias);
                 first = false;
             }
             if first {
-                scale_rows(0.0, &policies[self.terms()[0].policy].layers()[i].weight, &mut layer.weight);
-                scale_rows(0.0, &policies[self.terms()[0].policy].layers()[i].bias, &mut layer.bias);
+                scale_rows(
+                    0.0,
+                    &policies[self.terms()[0].policy.index()].layers()[i].weight,
+                    &mut layer.weight,
+                );
+                scale_rows(0.0, &policies[self.terms()[0].policy.index()].layers()[i].bias, &mut layer.bias);
             }
         }
     }
@@ -184,15 +189,15 @@ impl Blend {
         scratch: &mut MlpScratch,
         out: &mut [f32],
     ) {
-        let last = policies[self.terms()[0].policy].layers().len() - 1;
+        let last = policies[self.terms()[0].policy.index()].layers().len() - 1;
         if let Some(policy) = self.as_single() {
-            return policies[policy].evaluate_into(arithmetic, input, scratch, out);
+            return policies[policy.index()].evaluate_into(arithmetic, input, scratch, out);
         }
         let mut action = [0.0; 64];
         let action = &mut action[..out.len()];
         out.fill(0.0);
         for (policy, weight) in self.active(last) {
-            policies[policy].evaluate_into(arithmetic, input, scratch, action);
+            policies[policy.index()].evaluate_into(arithmetic, input, scratch, action);
             for (sum, a) in out.iter_mut().zip(&*action) {
                 *sum += weight * a;
             }

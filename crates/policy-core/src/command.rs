@@ -3,34 +3,37 @@
 use glam::Vec2;
 
 use crate::blend::Blend;
-use crate::evaluator::BlendMode;
-use crate::graph::{GraphPosition, PolicyGraph};
+use crate::graph::PolicyGraph;
+use crate::ids::{NodeId, PathId, SkillId};
+use crate::path::GraphPosition;
 
 /// Where on the graph to go.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub enum Goal {
-    /// Stay where it is.
+    /// Stay at the present position.
     #[default]
     Stay,
-    /// A coordinate on a path; see [`Path::position`](crate::Path::position).
+    /// A coordinate on a path; see [`Path::position`](crate::training::Path::position).
     Path {
-        /// Index of the path. One that is not there means [`Goal::Stay`].
-        path: usize,
+        /// The path. One that is not there means [`Goal::Stay`].
+        path: PathId,
         /// Clamped to the path.
         coordinate: f32,
     },
     /// A node, by the cheapest way. One that is not there means [`Goal::Stay`].
-    Node(usize),
+    Node(NodeId),
 }
 
 impl Goal {
-    /// The place on the graph, if there is one to go to.
+    /// The position on the graph, if there is one to go to.
     #[must_use]
     pub fn position(self, graph: &PolicyGraph) -> Option<GraphPosition> {
         match self {
             Goal::Stay => None,
-            Goal::Path { path, coordinate } => graph.paths().get(path).map(|p| p.position(coordinate)),
-            Goal::Node(node) => (node < graph.nodes().len()).then(|| GraphPosition::node(node)),
+            Goal::Path { path, coordinate } => {
+                graph.paths().get(path.index()).map(|p| p.position(coordinate))
+            }
+            Goal::Node(node) => (node.index() < graph.nodes().len()).then(|| GraphPosition::node(node)),
         }
     }
 }
@@ -43,11 +46,10 @@ pub struct Command {
     pub target: Option<Vec2>,
     /// Where on the graph to go.
     pub goal: Goal,
-    /// Index of a skill to start now.
-    pub skill: Option<usize>,
-    /// Blend weights that stand in for the place on the graph: manual sliders. Ignored when empty, not finite
+    /// A skill to start. It stays pending until the position on the graph allows it or
+    /// [`Controller::cancel_pending_skill`](crate::Controller::cancel_pending_skill) is called.
+    pub skill: Option<SkillId>,
+    /// Blend weights that replace the position on the graph: manual sliders. Ignored when empty, not finite
     /// or of policies that are not there.
     pub blend: Option<Blend>,
-    /// How the blend becomes an action.
-    pub mode: BlendMode,
 }

@@ -1,24 +1,36 @@
 //! One character's controller: rows 4 to 7 of the control tick. It composes graph, skills, observation,
-//! policy and action; the pack is shared, this is the state that is not.
+//! policy and action. The pack is shared; a [`ControllerState`] is what changes.
 
 use alloc::sync::Arc;
+use alloc::vec::Vec;
 
+use crate::action::ActionScaling;
 use crate::blend::Blend;
-use crate::body::{Body, DOF_COUNT};
 use crate::command::Command;
+use crate::controller_state::{ControllerState, StateError};
 use crate::evaluator::{BlendEvaluator, BlendMode};
-use crate::fall::{FallDetector, fall_height};
-use crate::graph::GraphPosition;
-use crate::judge::Judge;
+use crate::fall::{Heights, fall_height};
+use crate::ids::{NodeId, PolicyId, SkillId};
 use crate::kernel::Arithmetic;
-use crate::observation::{OBSERVATION_LEN, POLICY_INPUT_LEN, observe_into, target_input};
+use crate::observation::{observe_into, target_input};
 use crate::pack::CharacterPack;
-use crate::report::TickReport;
-use crate::skill::{SkillEnd, SkillProgress};
+use crate::path::GraphPosition;
+use crate::report::{StateFault, TickReport};
+use crate::scorer::Scorer;
+use crate::skill::SkillEnd;
 use crate::state::{CharacterState, JointTargets};
+use crate::turn_assist::TurnAssist;
+
+mod skills;
+mod swap;
+
+pub use self::swap::SwapError;
 
 /// Longest time a tick may stand for, seconds.
 const LONGEST_TICK: f32 = 0.25;
+
+/// A tick this much longer or shorter than the control period, relative to it, is reported.
+const RATE_TOLERANCE: f32 = 0.25;
 
 /// No action is larger than this; policies stay within about 1.
 const ACTION_LIMIT: f32 = 10.0;
@@ -28,34 +40,50 @@ const ACTION_LIMIT: f32 = 10.0;
 pub struct ControllerConfig {
     /// How products are summed.
     pub arithmetic: Arithmetic,
-    /// Keep the parameters of a resting blend; see [`BlendEvaluator::new`].
-    pub keep_blends: bool,
+    /// Cache the parameters of a resting blend; see [`BlendEvaluator::new`].
+    pub cache_blends: bool,
     /// Start the pack's recovery skill when the character has fallen.
-    pub recover: bool,
-    /// Start it too when a rise, out of where low is right, has not come off within 0.8 s. Otherwise the character acts to and
-    /// fro along the edge, and has fallen when that takes more than [`RISE_SECONDS`](crate::RISE_SECONDS).
-    pub rise: bool,
-    /// Index of the node to start at.
-    pub start: usize,
+    pub auto_recover: bool,
+    /// Start it too when standing up, out of a low gait, takes longer than 0.8 s. Otherwise the character acts to and
+    /// fro along the edge, and has fallen after [`RISE_SECONDS`](crate::training::RISE_SECONDS).
+    pub assist_rise: bool,
+    /// Node to start at. One that is not there means the first.
+    pub start: NodeId,
+    /// How a blend becomes an action.
+    pub blend_mode: BlendMode,
+    /// Time over which joint targets pass from one policy to the other when a skill starts or ends, seconds; 0 for a jump.
+    pub handover_secs: f32,
+    /// Slow down fast gaits while the target lies far off the heading; `None` to leave turning to the policies.
+    pub turn_assist: Option<TurnAssist>,
 }
 
 impl Default for ControllerConfig {
     fn default() -> Self {
-        Self { arithmetic: Arithmetic::Reproducible, keep_blends: true, recover: true, rise: true, start: 0 }
+        Self {
+            arithmetic: Arithmetic::Reproducible,
+            cache_blends: true,
+            auto_recover: true,
+            assist_rise: true,
+            start: NodeId::new(0),
+            blend_mode: BlendMode::Parameters,
+            handover_secs: 0.0,
+            turn_assist: None,
+        }
     }
 }
 
-/// Steers one character. Makes joint targets of what the character senses and what the game asks.
+/// Steers one character: turns what it senses and what the game asks into joint targets.
 #[derive(Clone, Debug)]
 pub struct Controller {
     pack: Arc<CharacterPack>,
     config: ControllerConfig,
+    state: ControllerState,
     evaluator: BlendEvaluator,
-    judge: Judge,
-    fall: FallDetector,
-    input: [f32; POLICY_INPUT_LEN],
-    targets: JointTargets,
-    report: TickReport,
+    scorer: Scorer,
+    input: Vec<f32>,
+    action: Vec<f32>,
+    /// Seconds of the tick that was prepared last.
+    tick_secs: f32,
 }
 
 impl Controller {
@@ -65,42 +93,48 @@ impl Controller {
         Self::with_config(pack, ControllerConfig::default())
     }
 
-    /// A controller with other choices than the default. A start node that is not there is the first.
+    /// A controller with other choices than the default. Allocates; ticks don't.
     #[must_use]
     pub fn with_config(pack: Arc<CharacterPack>, config: ControllerConfig) -> Self {
-        let evaluator = BlendEvaluator::new(&pack.policies()[0], config.arithmetic, config.keep_blends);
+        let skeleton = pack.skeleton();
         let mut controller = Self {
-            evaluator,
-            judge: Judge::new(&pack),
+            evaluator: BlendEvaluator::new(&pack.policies()[0], config.arithmetic, config.cache_blends),
+            scorer: Scorer::new(&pack),
+            state: ControllerState::new(&pack),
+            input: alloc::vec![0.0; skeleton.policy_input_len()],
+            action: alloc::vec![0.0; skeleton.joint_count()],
+            tick_secs: 0.0,
             pack,
             config,
-            fall: FallDetector::default(),
-            input: [0.0; POLICY_INPUT_LEN],
-            targets: JointTargets::default(),
-            report: TickReport::default(),
         };
         controller.reset();
         controller
     }
 
-    /// Back to the start node, as after the character was put elsewhere. Running skills are dropped.
+    /// Back to the start node, as after the character was put elsewhere. A running skill is interrupted, which the next
+    /// tick reports.
     pub fn reset(&mut self) {
-        let start = if self.config.start < self.pack.policies().len() { self.config.start } else { 0 };
-        self.report = TickReport::default();
-        self.place_at(GraphPosition::node(start));
-        self.fall.reset();
+        let start = self.start_node();
+        let interrupted = self.state.report.skill.map(|s| s.skill).or(self.state.interrupted);
+        self.state.clear();
+        self.evaluator.set_rest(self.state.rest, self.pack.policies());
+        self.state.report = TickReport::at(GraphPosition::node(start));
+        self.state.interrupted = interrupted;
         self.input.fill(0.0);
         self.zero_action();
     }
 
-    /// Puts the controller at a place on the graph at once, without travelling. Ignored when it is no place of
-    /// the graph.
-    pub fn place_at(&mut self, position: GraphPosition) {
-        let nodes = self.pack.policies().len();
-        if position.from < nodes && position.to < nodes && (0.0..=1.0).contains(&position.t) {
-            (self.report.position, self.report.goal) = (position, position);
-            self.report.blend = blend_at(position);
+    /// Puts the controller at a position on the graph at once, without travelling. A running skill is interrupted, which the
+    /// next tick reports. Returns false and does nothing when the graph has no such position.
+    pub fn place_at(&mut self, position: GraphPosition) -> bool {
+        let exists = self.pack.graph().contains(position);
+        if exists {
+            self.state.interrupted =
+                self.state.report.skill.take().map(|s| s.skill).or(self.state.interrupted);
+            self.set_position(position);
+            self.state.fall.reset();
         }
+        exists
     }
 
     /// The shared pack.
@@ -109,52 +143,107 @@ impl Controller {
         &self.pack
     }
 
+    /// The choices it was made with.
+    #[must_use]
+    pub fn config(&self) -> &ControllerConfig {
+        &self.config
+    }
+
+    /// Sets how a blend becomes an action, from the next tick on.
+    pub fn set_blend_mode(&mut self, mode: BlendMode) {
+        self.config.blend_mode = mode;
+    }
+
     /// What the last tick did.
     #[must_use]
     pub fn report(&self) -> &TickReport {
-        &self.report
+        &self.state.report
     }
 
     /// Inputs of the policy in the last tick: the normalised observation, then the target.
     #[must_use]
-    pub fn policy_input(&self) -> &[f32; POLICY_INPUT_LEN] {
+    pub fn policy_input(&self) -> &[f32] {
         &self.input
+    }
+
+    /// Joint targets of the last tick, radians.
+    #[must_use]
+    pub fn joint_targets(&self) -> &JointTargets {
+        &self.state.targets
+    }
+
+    /// Forgets a skill that was requested and has not started. Returns it.
+    pub fn cancel_pending_skill(&mut self) -> Option<SkillId> {
+        self.state.report.pending_skill.take()
+    }
+
+    /// Copies everything that the next tick depends on. Does not allocate.
+    ///
+    /// # Panics
+    /// When `out` was made for a pack with another skeleton.
+    pub fn save_into(&self, out: &mut ControllerState) {
+        out.copy_from(&self.state);
+        out.rest = *self.evaluator.rest();
+    }
+
+    /// Goes on from a saved state: the next ticks give the bits that they gave then. Does not allocate.
+    ///
+    /// # Errors
+    /// When the state is not one of this pack; then the controller is unchanged.
+    pub fn restore(&mut self, state: &ControllerState) -> Result<(), StateError> {
+        state.check(&self.pack)?;
+        self.state.copy_from(state);
+        self.evaluator.set_rest(state.rest, self.pack.policies());
+        Ok(())
     }
 
     /// One control tick: from what the character senses and what the game asks to joint targets, radians.
     ///
-    /// `dt_secs` is the time since the last tick, clamped to [0, 0.25]. A state that is not finite gives the
-    /// targets of a zero action and [`TickReport::non_finite`]. Never allocates, never panics.
+    /// `dt_secs` is the time since the last tick, clamped to [0, 0.25]. A state that is not finite or has the wrong size gives
+    /// the targets of a zero action and a [`TickReport::fault`]. Never allocates, never panics.
     pub fn tick(&mut self, state: &CharacterState, command: &Command, dt_secs: f32) -> &JointTargets {
-        if !self.prepare(state, command, dt_secs) {
-            return &self.targets;
+        if self.prepare(state, command, dt_secs) {
+            let mut action = core::mem::take(&mut self.action);
+            self.state.report.evaluation = self.evaluator.evaluate_into(
+                self.pack.policies(),
+                &self.state.report.blend,
+                self.config.blend_mode,
+                &self.input,
+                &mut action,
+            );
+            self.accept(&action);
+            self.action = action;
         }
-        let mut action = [0.0; DOF_COUNT];
-        self.report.evaluation = self.evaluator.evaluate_into(
-            self.pack.policies(),
-            &self.report.blend,
-            command.mode,
-            &self.input,
-            &mut action,
-        );
-        self.accept(&action)
+        &self.state.targets
     }
 
     /// The first half of a tick: everything up to the policy. Then [`TickReport::blend`] is to be evaluated
     /// with [`Controller::policy_input`], by a batch say, and its action given to [`Controller::accept`].
-    /// False when the state is not finite: the joint targets are set and there is nothing to evaluate.
+    /// False when the state has a fault: the joint targets are set and there is nothing to evaluate.
     pub fn prepare(&mut self, state: &CharacterState, command: &Command, dt_secs: f32) -> bool {
         let dt = if dt_secs > 0.0 { dt_secs.min(LONGEST_TICK) } else { 0.0 };
-        self.report.non_finite = !state.is_finite();
-        (self.report.skill_started, self.report.skill_ended) = (None, None);
-        if self.report.non_finite {
+        self.tick_secs = dt;
+        let period = 1.0 / self.pack.control_hz();
+        let report = &mut self.state.report;
+        let within = (1.0 - RATE_TOLERANCE) * period..=(1.0 + RATE_TOLERANCE) * period;
+        report.off_rate = !within.contains(&dt_secs);
+        let interrupted = self.state.interrupted.take();
+        report.skill_ended = interrupted.map(|skill| (skill, SkillEnd::Interrupted));
+        (report.skill_started, report.skill_refused) = (None, None);
+        report.fault = match state {
+            s if !s.fits(self.pack.skeleton()) => Some(StateFault::WrongSize),
+            s if !s.is_finite() => Some(StateFault::NonFinite),
+            _ => None,
+        };
+        if report.fault.is_some() {
             self.zero_action();
             return false;
         }
-        self.run_skill(state, dt);
-        self.watch_falls(state, dt);
-        self.request_skill(command.skill);
-        self.travel(state, command, dt);
+        let heights = Heights::of(self.pack.skeleton(), state);
+        self.run_skill(state, heights, dt);
+        self.detect_fall(heights, dt);
+        self.request_skill(command.skill, heights);
+        self.travel(state, command, heights, dt);
         self.choose_blend(command);
         self.observe(state, command);
         true
@@ -162,101 +251,60 @@ impl Controller {
 
     /// The second half of a tick: makes joint targets of the policy's action. Numbers that are not finite
     /// count as zero.
-    pub fn accept(&mut self, action: &[f32; DOF_COUNT]) -> &JointTargets {
-        let safe = action.map(|a| if a.is_finite() { a.clamp(-ACTION_LIMIT, ACTION_LIMIT) } else { 0.0 });
-        self.pack.action().targets_into(&safe, &mut self.targets);
-        &self.targets
-    }
-
-    /// Joint targets of the last tick, radians.
-    #[must_use]
-    pub fn joint_targets(&self) -> &JointTargets {
-        &self.targets
+    ///
+    /// # Panics
+    /// When `action` has not one number for each hinge.
+    pub fn accept(&mut self, action: &[f32]) -> &JointTargets {
+        assert_eq!(action.len(), self.state.targets.len(), "numbers of an action");
+        let scaling = self.pack.action();
+        let numbers = scaling.centre().iter().zip(scaling.gain()).zip(action);
+        for (target, ((centre, gain), a)) in self.state.targets.iter_mut().zip(numbers) {
+            let a = if a.is_finite() { a.clamp(-ACTION_LIMIT, ACTION_LIMIT) } else { 0.0 };
+            *target = centre + gain * a;
+        }
+        self.hand_over();
+        &self.state.targets
     }
 
     fn zero_action(&mut self) {
-        self.pack.action().targets_into(&[0.0; DOF_COUNT], &mut self.targets);
+        let scaling: &ActionScaling = self.pack.action();
+        self.state.targets.copy_from_slice(scaling.centre());
     }
 
-    fn run_skill(&mut self, state: &CharacterState, dt: f32) {
-        let Some(mut progress) = self.report.skill else { return };
-        let skill = &self.pack.skills()[progress.skill];
-        let score = skill.discriminator.and_then(|d| self.judge.score(&self.pack, d, state));
-        let Some(end) = progress.tick(&skill.end, score, state.height_of(Body::Pelvis), dt) else {
-            self.report.skill = Some(progress);
-            return;
-        };
-        self.report.skill_ended = Some((progress.skill, end));
-        self.report.skill = None;
-        self.place_at(GraphPosition::node(skill.returns_to));
-        self.fall.reset();
-        // A character that lies where its time to rise is over tries again at once.
-        let low = fall_height(self.pack.graph(), self.report.position)
-            .is_some_and(|h| state.height_of(Body::Pelvis) < h);
-        if self.config.recover && low && self.pack.recovery() == Some(progress.skill) {
-            self.start_skill(progress.skill);
-        }
+    fn set_position(&mut self, position: GraphPosition) {
+        let report = &mut self.state.report;
+        (report.position, report.goal, report.blend) = (position, position, position.blend());
     }
 
-    fn watch_falls(&mut self, state: &CharacterState, dt: f32) {
-        let limit = match self.report.skill {
-            Some(_) => None,
-            None => fall_height(self.pack.graph(), self.report.position),
-        };
-        self.report.fallen = self.fall.tick(limit, state.height_of(Body::Pelvis), dt);
-        if let (true, true, Some(recovery)) = (self.report.fallen, self.config.recover, self.pack.recovery())
-        {
-            self.start_skill(recovery);
-        }
-    }
-
-    fn request_skill(&mut self, request: Option<usize>) {
-        if let Some(skill) = request.filter(|&s| s < self.pack.skills().len()) {
-            self.report.pending_skill = Some(skill);
-        }
-        let Some(pending) = self.report.pending_skill else { return };
-        let skill = &self.pack.skills()[pending];
-        let ready = skill.starts_from(self.report.position.nearest_node());
-        if ready && self.report.skill.is_none() {
-            self.start_skill(pending);
-        }
-    }
-
-    fn start_skill(&mut self, skill: usize) {
-        if let Some(running) = self.report.skill.replace(SkillProgress::start(skill)) {
-            self.report.skill_ended = Some((running.skill, SkillEnd::Interrupted));
-        }
-        (self.report.skill_started, self.report.pending_skill) = (Some(skill), None);
-        self.report.fallen = false;
-        self.fall.reset();
-        self.judge.reset();
-    }
-
-    /// Moves along the graph: to the nearest node a pending skill may start from, else to the command's goal. Out of where
-    /// low is right it goes when the character has risen.
-    fn travel(&mut self, state: &CharacterState, command: &Command, dt: f32) {
-        if self.report.skill.is_some() {
+    /// Moves along the graph: to the nearest node that a pending skill may start from, else to the command's goal. Leaving a
+    /// low gait requires standing first.
+    fn travel(&mut self, state: &CharacterState, command: &Command, heights: Heights, dt: f32) {
+        if self.state.report.skill.is_some() {
             return;
         }
         let graph = self.pack.graph();
-        let goal = match self.report.pending_skill.map(|s| &self.pack.skills()[s].entry) {
+        let report = &mut self.state.report;
+        let goal = match report.pending_skill.map(|s| &self.pack.skills()[s.index()].entry) {
             Some(entry) => {
-                let from = self.report.position.nearest_node();
-                let cost = |node: &&usize| graph.routes().cost(from, **node);
+                let from = report.position.nearest_node();
+                let cost = |node: &&NodeId| graph.routes().cost(from, **node);
                 let nearest = entry.iter().min_by(|a, b| cost(a).total_cmp(&cost(b)));
                 nearest.map(|&node| GraphPosition::node(node))
             }
-            None => command.goal.position(graph),
+            None => {
+                let assist = self.config.turn_assist;
+                let goal = assist.map_or(command.goal, |a| a.adjusted(graph, state, command));
+                goal.position(graph)
+            }
         };
-        self.report.goal = goal.unwrap_or(self.report.position);
-        let mut next = self.report.position;
-        graph.travel(&mut next, self.report.goal, dt);
-        let limits = [self.report.position, next].map(|position| fall_height(graph, position));
-        let heights = [Body::Pelvis, Body::Head].map(|body| state.height_of(body));
-        if !self.fall.holds_back(limits, heights, dt) {
-            self.report.position = next;
+        report.goal = goal.unwrap_or(report.position);
+        let mut next = report.position;
+        graph.travel(&mut next, report.goal, dt);
+        let limits = [report.position, next].map(|position| fall_height(graph, position));
+        if !self.state.fall.holds_back(limits, heights, dt) {
+            report.position = next;
         } else if let (true, true, Some(recovery)) =
-            (self.config.rise, self.fall.is_late(), self.pack.recovery())
+            (self.config.assist_rise, self.state.fall.is_late(), self.pack.recovery())
         {
             self.start_skill(recovery);
         }
@@ -264,30 +312,29 @@ impl Controller {
 
     fn choose_blend(&mut self, command: &Command) {
         let manual = command.blend.filter(|b| is_valid(b, self.pack.policies().len()));
-        self.report.blend = match (self.report.skill, manual) {
-            (Some(progress), _) => Blend::single(self.pack.skills()[progress.skill].policy),
+        let report = &mut self.state.report;
+        report.blend = match (report.skill, manual) {
+            (Some(progress), _) => Blend::single(self.pack.skills()[progress.skill.index()].policy),
             (None, Some(blend)) => blend,
-            (None, None) => blend_at(self.fall.place_to_act(self.report.position)),
+            (None, None) => self.state.fall.acting_position(report.position).blend(),
         };
-        if let (BlendMode::Switch, Some(policy)) = (command.mode, self.report.blend.strongest()) {
-            self.report.blend = Blend::single(policy);
+        if let (BlendMode::Switch, Some(policy)) = (self.config.blend_mode, report.blend.strongest()) {
+            report.blend = Blend::single(policy);
         }
     }
 
     fn observe(&mut self, state: &CharacterState, command: &Command) {
-        let observation = self.input.first_chunk_mut::<OBSERVATION_LEN>().expect("the input starts with it");
-        observe_into(state, observation);
+        let skeleton = self.pack.skeleton();
+        let (observation, target) = self.input.split_at_mut(skeleton.observation_len());
+        observe_into(skeleton, state, observation);
         self.pack.tensors().observation_normaliser.normalise_in_place(observation);
-        self.report.target = command.target.map_or([0.0; 2], |target| target_input(state, target));
-        self.input[OBSERVATION_LEN..].copy_from_slice(&self.report.target);
+        self.state.report.target = command.target.map_or([0.0; 2], |target| target_input(state, target));
+        target.copy_from_slice(&self.state.report.target);
     }
 }
 
-fn blend_at(position: GraphPosition) -> Blend {
-    Blend::between(position.from, position.to, position.t)
-}
-
 fn is_valid(blend: &Blend, policies: usize) -> bool {
+    let known = |policy: PolicyId| policy.index() < policies;
     let terms = blend.terms();
-    !terms.is_empty() && terms.iter().all(|t| t.policy < policies && t.weights.iter().all(|w| w.is_finite()))
+    !terms.is_empty() && terms.iter().all(|t| known(t.policy) && t.weights.iter().all(|w| w.is_finite()))
 }

@@ -4,7 +4,7 @@ use crate::blend::Blend;
 use crate::kernel::Arithmetic;
 use crate::mlp::{Mlp, MlpScratch};
 
-/// Ticks a blend rests before its parameters are kept: building them costs about four evaluations.
+/// Evaluations that a blend rests before its parameters are cached: building them costs about four evaluations.
 const RESTING_TICKS: u32 = 4;
 
 /// How a blend of policies becomes one action.
@@ -46,12 +46,20 @@ pub enum Evaluation {
     /// One policy.
     #[default]
     Single,
-    /// Interpolated parameters, kept from an earlier tick: one product.
+    /// Interpolated parameters, cached in an earlier tick: one product.
     Cached,
     /// Interpolated parameters without building them: one product for each policy.
     Fused,
     /// Every policy, actions interpolated.
     Actions,
+}
+
+/// The last blend of parameters and how many evaluations it has rested. Whether the next evaluation is fused or cached,
+/// which agree to rounding only, depends on it.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(crate) struct BlendRest {
+    pub(crate) last: Blend,
+    pub(crate) rested: u32,
 }
 
 /// Room and cache for the evaluations of one character.
@@ -60,22 +68,35 @@ pub struct BlendEvaluator {
     arithmetic: Arithmetic,
     scratch: MlpScratch,
     cache: Option<Mlp>,
-    last: Blend,
-    rested: u32,
+    rest: BlendRest,
 }
 
 impl BlendEvaluator {
-    /// An evaluator for policies of one shape. With `keep` it holds the parameters of a resting blend, as
-    /// large as one policy; a crowd that shares its caches may be faster without.
+    /// An evaluator for policies of one shape. With `cache` it holds the parameters of a resting blend, as
+    /// large as one policy; a crowd that shares its processor cache may be faster without.
     #[must_use]
-    pub fn new(shape: &Mlp, arithmetic: Arithmetic, keep: bool) -> Self {
+    pub fn new(shape: &Mlp, arithmetic: Arithmetic, cache: bool) -> Self {
         Self {
             arithmetic,
             scratch: MlpScratch::for_mlp(shape),
-            cache: keep.then(|| shape.clone()),
-            last: Blend::default(),
-            rested: 0,
+            cache: cache.then(|| shape.clone()),
+            rest: BlendRest::default(),
         }
+    }
+
+    pub(crate) fn rest(&self) -> &BlendRest {
+        &self.rest
+    }
+
+    /// Goes on where an evaluator with this rest stood: builds the cached parameters again where they differ. Does not
+    /// allocate. The blend must be empty or of these policies.
+    pub(crate) fn set_rest(&mut self, rest: BlendRest, policies: &[Mlp]) {
+        let built = |rest: &BlendRest| rest.rested >= RESTING_TICKS;
+        let same = built(&self.rest) && self.rest.last == rest.last;
+        if let (Some(cache), true, false) = (&mut self.cache, built(&rest), same) {
+            rest.last.parameters_into(policies, cache);
+        }
+        self.rest = rest;
     }
 
     /// Writes the action of a blend to `out`. Does not allocate. Fused and cached evaluation agree to
@@ -96,19 +117,19 @@ impl BlendEvaluator {
             BlendMode::Parameters | BlendMode::Actions => blend.as_single(),
         };
         if let Some(policy) = single {
-            policies[policy].evaluate_into(self.arithmetic, input, &mut self.scratch, out);
+            policies[policy.index()].evaluate_into(self.arithmetic, input, &mut self.scratch, out);
             return Evaluation::Single;
         }
         if mode == BlendMode::Actions {
             blend.evaluate_actions_into(policies, self.arithmetic, input, &mut self.scratch, out);
             return Evaluation::Actions;
         }
-        let rests = self.last == *blend;
-        self.rested = if rests { self.rested.saturating_add(1) } else { 0 };
-        self.last = *blend;
+        let BlendRest { last, rested } = &mut self.rest;
+        *rested = if last == blend { rested.saturating_add(1) } else { 0 };
+        *last = *blend;
         match &mut self.cache {
-            Some(cache) if self.rested >= RESTING_TICKS => {
-                if self.rested == RESTING_TICKS {
+            Some(cache) if *rested >= RESTING_TICKS => {
+                if *rested == RESTING_TICKS {
                     blend.parameters_into(policies, cache);
                 }
                 cache.evaluate_into(self.arithmetic, input, &mut self.scratch, out);

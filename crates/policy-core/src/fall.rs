@@ -1,83 +1,121 @@
-//! Fall detection: a pelvis that stays lower than the policies in use allow. Who comes from where low is right has to be up
-//! before it counts.
+//! Fall detection and standing up: one rule for every user of the graph.
+//!
+//! A character has fallen when its root stays lower than the policies in use allow. Leaving a low gait requires
+//! standing first.
 
-use crate::graph::{GraphPosition, PolicyGraph};
+use crate::graph::PolicyGraph;
+use crate::path::GraphPosition;
+use crate::skeleton::Skeleton;
+use crate::state::CharacterState;
 
-/// Seconds the pelvis must stay low.
+/// Seconds that the root must stay low.
 const FALL_SECONDS: f32 = 0.3;
 
-/// The pelvis has risen when it is this much higher than where it would have fallen, metres.
+/// A character has stood up when its root is this much above the fall height, metres.
 const RISEN_METRES: f32 = 0.1;
 
-/// And the head is this much higher than the pelvis: who stoops head down on the way up is about to go down again.
+/// Its head must be this much above the root as well, metres: a character with its head down is about to go down again.
 const HEAD_UP_METRES: f32 = 0.2;
 
-/// Seconds that a rise may take, out of where low is right, before it counts as a fall.
+/// Seconds that standing up may take, out of a low gait, before it counts as a fall.
 pub const RISE_SECONDS: f32 = 3.0;
 
-/// Seconds after which a rise that has not come off is late: another skill takes over, or it takes a run-up.
-const LATE_SECONDS: f32 = 0.8;
+/// Seconds after which standing up is late: the recovery skill takes over, or the character acts to and fro along the edge.
+pub const LATE_RISE_SECONDS: f32 = 0.8;
 
-/// Seconds that a run-up lasts.
-const RUN_UP_SECONDS: f32 = 1.1;
+/// Seconds of one turn to and fro.
+const SWING_SECONDS: f32 = 1.1;
 
-/// How far back along the edge a run-up goes.
-const RUN_UP: f32 = 0.6;
+/// How far back along the edge it goes.
+const SWING: f32 = 0.6;
 
-/// Watches one character.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub(crate) struct FallDetector {
-    low_seconds: f32,
-    rising_seconds: f32,
+/// Heights above the ground that the rules need, metres.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Heights {
+    /// Of the root.
+    pub root: f32,
+    /// Of the head; that of the root plus enough to count as up for a skeleton without a head.
+    pub head: f32,
 }
 
-/// Pelvis height below which a character at this place on the graph has fallen; `None` where low is right.
-pub(crate) fn fall_height(graph: &PolicyGraph, position: GraphPosition) -> Option<f32> {
-    let height = |node: usize| graph.nodes()[node].fall_height;
-    match position.as_node() {
-        Some(node) => height(node),
-        None => Some(height(position.from)?.min(height(position.to)?)),
+impl Heights {
+    /// Heights of a character.
+    ///
+    /// # Panics
+    /// When the state does not fit the skeleton.
+    #[must_use]
+    pub fn of(skeleton: &Skeleton, state: &CharacterState) -> Self {
+        let root = state.root_height();
+        let head = skeleton.head().map_or(f32::INFINITY, |head| state.height_of(head));
+        Self { root, head }
     }
+
+    /// True when it has stood up for a gait with this fall height.
+    #[must_use]
+    pub fn has_risen(self, fall_height: f32) -> bool {
+        self.root >= fall_height + RISEN_METRES && self.head >= self.root + HEAD_UP_METRES
+    }
+}
+
+/// Root height below which a character at this position has fallen, metres; `None` where no height is a fall.
+#[must_use]
+pub fn fall_height(graph: &PolicyGraph, position: GraphPosition) -> Option<f32> {
+    match position.as_node() {
+        Some(node) => graph.node(node).fall_height,
+        None => Some(graph.node(position.from).fall_height?.min(graph.node(position.to).fall_height?)),
+    }
+}
+
+/// Watches one character for falls, and holds it back in a low gait until it has stood up.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct FallDetector {
+    pub(crate) low_seconds: f32,
+    pub(crate) rising_seconds: f32,
 }
 
 impl FallDetector {
-    pub(crate) fn reset(&mut self) {
+    /// Forgets falls and rises.
+    pub fn reset(&mut self) {
         *self = Self::default();
     }
 
-    /// True when the step from a place with one limit to a place with another has to wait until the character has risen.
-    pub(crate) fn holds_back(
-        &mut self,
-        [from, to]: [Option<f32>; 2],
-        [pelvis_height, head_height]: [f32; 2],
-        dt_secs: f32,
-    ) -> bool {
-        let risen = |to| pelvis_height >= to + RISEN_METRES && head_height >= pelvis_height + HEAD_UP_METRES;
-        let holds = to.is_some_and(|to| from.is_none_or(|from| from < to) && !risen(to));
+    /// Takes one tick of the way from one position to the next, each by its [`fall_height`]. True when the step has to wait
+    /// until the character has stood up.
+    pub fn holds_back(&mut self, [from, to]: [Option<f32>; 2], heights: Heights, dt_secs: f32) -> bool {
+        let rises = |to: f32| from.is_none_or(|from| from < to);
+        let holds = to.is_some_and(|to| rises(to) && !heights.has_risen(to));
         self.rising_seconds = if holds { self.rising_seconds + dt_secs } else { 0.0 };
         holds
     }
 
-    /// True when the character is held back and should have risen by now.
-    pub(crate) fn is_late(&self) -> bool {
-        self.rising_seconds > LATE_SECONDS
+    /// Seconds that the character has been held back.
+    #[must_use]
+    pub fn rising_seconds(&self) -> f32 {
+        self.rising_seconds
     }
 
-    /// Where on the graph a character acts that is held back at `position`: there, and after a while to and fro along the edge. A
-    /// deterministic policy that has come to rest half-way up stays there for good; what moves it is another policy.
-    pub(crate) fn place_to_act(&self, position: GraphPosition) -> GraphPosition {
+    /// True when the character is held back and should have stood up by now.
+    #[must_use]
+    pub fn is_late(&self) -> bool {
+        self.rising_seconds > LATE_RISE_SECONDS
+    }
+
+    /// Position whose policies a character that is held back acts by: its own, and once it is late to and fro along the edge. A
+    /// deterministic policy that rests half-way up stays there for good; another policy moves it on.
+    #[must_use]
+    pub fn acting_position(&self, position: GraphPosition) -> GraphPosition {
         if !self.is_late() || position.as_node().is_some() {
             return position;
         }
-        let late = self.rising_seconds - LATE_SECONDS;
-        let back = 0.5 * RUN_UP * (1.0 - libm::cosf(core::f32::consts::TAU * late / RUN_UP_SECONDS));
+        let late = self.rising_seconds - LATE_RISE_SECONDS;
+        let back = 0.5 * SWING * (1.0 - libm::cosf(core::f32::consts::TAU * late / SWING_SECONDS));
         let t = if position.t < 0.5 { position.t + back } else { position.t - back };
         GraphPosition { t: t.clamp(0.0, 1.0), ..position }
     }
 
-    /// Takes the pelvis' height above the ground; true while the character has fallen.
-    pub(crate) fn tick(&mut self, limit: Option<f32>, pelvis_height: f32, dt_secs: f32) -> bool {
-        let low = limit.is_some_and(|limit| pelvis_height < limit);
+    /// Takes the root's height above the ground; true while the character has fallen.
+    pub fn tick(&mut self, limit: Option<f32>, root_height: f32, dt_secs: f32) -> bool {
+        let low = limit.is_some_and(|limit| root_height < limit);
         self.low_seconds = if low { self.low_seconds + dt_secs } else { 0.0 };
         self.low_seconds >= FALL_SECONDS || self.rising_seconds >= RISE_SECONDS
     }
@@ -86,19 +124,25 @@ impl FallDetector {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::ids::NodeId;
+
+    fn heights(root: f32, head: f32) -> Heights {
+        Heights { root, head }
+    }
 
     #[test]
-    fn a_late_rise_goes_back_and_comes_again_and_its_time_runs_on() {
+    fn a_late_rise_swings_along_the_edge_until_its_time_is_over() {
         let mut fall = FallDetector::default();
-        let held = GraphPosition { from: 4, to: 5, t: 0.01 };
+        let held = GraphPosition { from: NodeId::new(4), to: NodeId::new(5), t: 0.01 };
         let mut places = alloc::vec::Vec::new();
         let mut ticks = 0;
         while !fall.tick(None, 0.3, 0.1) {
-            assert!(fall.holds_back([Some(0.2), Some(0.4)], [0.3, 0.7], 0.1));
+            assert!(fall.holds_back([Some(0.2), Some(0.4)], heights(0.3, 0.7), 0.1));
             // Up to rounding: not at eight tenths, but at nine.
             assert!(ticks == 7 || fall.is_late() == (ticks > 7), "{ticks}");
-            places.push(fall.place_to_act(held).t);
-            let other_way = fall.place_to_act(GraphPosition { from: 5, to: 4, t: 0.99 });
+            places.push(fall.acting_position(held).t);
+            let other_way =
+                fall.acting_position(GraphPosition { from: NodeId::new(5), to: NodeId::new(4), t: 0.99 });
             assert!((other_way.t + places[ticks] - 1.0).abs() < 1e-5, "{other_way:?} {places:?}");
             ticks += 1;
         }
@@ -107,12 +151,13 @@ mod tests {
         let furthest = places.iter().copied().fold(0.0, f32::max);
         assert!(furthest > 0.55 && furthest < 0.62, "{furthest}");
         assert!(places[18] < 0.05, "up again after a run-up: {places:?}");
-        let other_way = fall.place_to_act(GraphPosition { from: 5, to: 4, t: 0.99 });
+        let other_way =
+            fall.acting_position(GraphPosition { from: NodeId::new(5), to: NodeId::new(4), t: 0.99 });
         assert!(other_way.t <= 0.99);
-        assert!(!fall.holds_back([Some(0.4), Some(0.4)], [0.9, 1.4], 0.1));
+        assert!(!fall.holds_back([Some(0.4), Some(0.4)], heights(0.9, 1.4), 0.1));
         // Hips up and head down is no rise.
-        assert!(fall.holds_back([None, Some(0.4)], [0.9, 1.0], 0.1));
-        assert!(!fall.holds_back([None, Some(0.4)], [0.9, 1.2], 0.1));
-        assert_eq!(fall.place_to_act(held), held);
+        assert!(fall.holds_back([None, Some(0.4)], heights(0.9, 1.0), 0.1));
+        assert!(!fall.holds_back([None, Some(0.4)], heights(0.9, 1.2), 0.1));
+        assert_eq!(fall.acting_position(held), held);
     }
 }

@@ -1,60 +1,43 @@
-//! What a discriminator sees: features of one frame, and the history of frames it judges.
+//! What a discriminator sees: features of one frame, and the history of frames that it scores.
 //!
-//! The frame holds pelvis height (1), pelvis rotation (6), linear (3) and angular velocity (3) in the
-//! heading frame, local rotation of the 12 jointed bodies (72), joint velocities (28), hands and feet
-//! relative to the pelvis (12). See AMP (Peng et al. 2021), section 5.
+//! A frame holds height (1), rotation (6), linear (3) and angular velocity (3) of the root in the heading frame, the
+//! local rotation of every jointed body (6 each), joint velocities (1 each), hands and feet relative to the root (3
+//! each). See AMP (Peng et al. 2021), section 5.
+
+use alloc::vec::Vec;
 
 use glam::Quat;
 
-use crate::body::{Body, DOF_COUNT};
 use crate::heading::{Heading, axes_xz};
 use crate::observation::Cursor;
+use crate::skeleton::Skeleton;
 use crate::state::CharacterState;
-
-/// Numbers in one discriminator frame.
-pub const FRAME_LEN: usize = 1 + 6 + 3 + 3 + 6 * 12 + DOF_COUNT + 3 * 4;
 
 /// Ages of the frames a discriminator sees, in control ticks, newest first.
 pub const FRAME_AGES: [usize; 5] = [0, 1, 2, 4, 8];
 
-/// Inputs of a discriminator: one frame for each of [`FRAME_AGES`].
-pub const DISCRIMINATOR_INPUT_LEN: usize = FRAME_LEN * FRAME_AGES.len();
-
-/// Frames a [`FrameHistory`] must have seen before it can be judged.
+/// Frames a [`FrameHistory`] must have seen before it can be scored.
 pub const HISTORY_LEN: usize = FRAME_AGES[FRAME_AGES.len() - 1] + 1;
 
-/// Bodies that hang on joints, in the order of their features; hands are welded to the lower arms.
-const JOINTED: [Body; 12] = [
-    Body::Torso,
-    Body::Head,
-    Body::RightUpperArm,
-    Body::RightLowerArm,
-    Body::LeftUpperArm,
-    Body::LeftLowerArm,
-    Body::RightThigh,
-    Body::RightShin,
-    Body::RightFoot,
-    Body::LeftThigh,
-    Body::LeftShin,
-    Body::LeftFoot,
-];
-
-const ENDS: [Body; 4] = [Body::RightHand, Body::LeftHand, Body::RightFoot, Body::LeftFoot];
-
 /// Writes the raw features of one frame to `out`. Does not allocate.
-pub fn discriminator_frame_into(state: &CharacterState, out: &mut [f32; FRAME_LEN]) {
-    let pelvis = state.body(Body::Pelvis);
-    let heading = Heading::from_rotation(pelvis.rotation);
+///
+/// # Panics
+/// When the state does not fit the skeleton, or `out` is not [`Skeleton::frame_len`] long.
+pub fn discriminator_frame_into(skeleton: &Skeleton, state: &CharacterState, out: &mut [f32]) {
+    assert!(state.fits(skeleton), "a state of the skeleton");
+    assert_eq!(out.len(), skeleton.frame_len(), "numbers of a frame");
+    let root = state.root();
+    let heading = Heading::from_rotation(root.rotation);
     let mut cursor = Cursor { out, at: 0 };
-    cursor.push(state.height_of(Body::Pelvis));
-    let (x, z) = axes_xz(pelvis.rotation);
+    cursor.push(state.root_height());
+    let (x, z) = axes_xz(root.rotation);
     cursor.push3(heading.heading_from_world(x));
     cursor.push3(heading.heading_from_world(z));
-    cursor.push3(heading.heading_from_world(pelvis.linear_velocity));
-    cursor.push3(heading.heading_from_world(pelvis.angular_velocity));
-    for body in JOINTED {
-        let parent = body.parent().expect("a jointed body hangs on another");
-        let local: Quat = state.body(parent).rotation.conjugate() * state.body(body).rotation;
+    cursor.push3(heading.heading_from_world(root.linear_velocity));
+    cursor.push3(heading.heading_from_world(root.angular_velocity));
+    for &body in skeleton.jointed_bodies() {
+        let parent = skeleton.parent(body).map_or(Quat::IDENTITY, |parent| state.body(parent).rotation);
+        let local: Quat = parent.conjugate() * state.body(body).rotation;
         let (x, z) = axes_xz(local);
         cursor.push3(x);
         cursor.push3(z);
@@ -62,39 +45,57 @@ pub fn discriminator_frame_into(state: &CharacterState, out: &mut [f32; FRAME_LE
     for &velocity in &state.joint_velocities {
         cursor.push(velocity);
     }
-    for body in ENDS {
-        cursor.push3(heading.heading_from_world(state.body(body).position - pelvis.position));
+    for &body in skeleton.hands().iter().chain(skeleton.feet()) {
+        cursor.push3(heading.heading_from_world(state.body(body).position - root.position));
     }
-    debug_assert_eq!(cursor.at, FRAME_LEN);
 }
 
 /// The last frames of one character, normalised, as its discriminators need them.
 ///
-/// A ring of [`HISTORY_LEN`] frames; allocates nothing.
-#[derive(Clone, Debug)]
+/// A ring of [`HISTORY_LEN`] frames; sized once.
+#[derive(Clone, Debug, PartialEq)]
 pub struct FrameHistory {
-    frames: [[f32; FRAME_LEN]; HISTORY_LEN],
+    /// [`HISTORY_LEN`] frames, one behind the other.
+    frames: Vec<f32>,
+    frame_len: usize,
     newest: usize,
     seen: usize,
 }
 
-impl Default for FrameHistory {
-    fn default() -> Self {
-        Self { frames: [[0.0; FRAME_LEN]; HISTORY_LEN], newest: 0, seen: 0 }
-    }
-}
-
 impl FrameHistory {
+    /// An empty history for frames of this length. Allocates.
+    #[must_use]
+    pub fn new(frame_len: usize) -> Self {
+        Self { frames: alloc::vec![0.0; HISTORY_LEN * frame_len], frame_len, newest: 0, seen: 0 }
+    }
+
+    /// Copies a history of the same size without allocating.
+    pub(crate) fn copy_from(&mut self, other: &Self) {
+        self.frames.copy_from_slice(&other.frames);
+        (self.newest, self.seen) = (other.newest, other.seen);
+    }
+
+    /// Numbers of all frames of a history.
+    pub(crate) fn new_len(frame_len: usize) -> usize {
+        HISTORY_LEN * frame_len
+    }
+
     /// Forgets all frames, as after a reset.
     pub fn clear(&mut self) {
         self.seen = 0;
     }
 
+    /// Forgets all frames and their bits: what a new history is.
+    pub(crate) fn reset(&mut self) {
+        self.frames.fill(0.0);
+        (self.newest, self.seen) = (0, 0);
+    }
+
     /// The slot of a new frame, for the caller to write; the oldest frame is lost.
-    pub fn push(&mut self) -> &mut [f32; FRAME_LEN] {
+    pub fn push(&mut self) -> &mut [f32] {
         self.newest = (self.newest + 1) % HISTORY_LEN;
         self.seen = (self.seen + 1).min(HISTORY_LEN);
-        &mut self.frames[self.newest]
+        &mut self.frames[self.newest * self.frame_len..][..self.frame_len]
     }
 
     /// True once the oldest frame a discriminator sees is there.
@@ -104,14 +105,38 @@ impl FrameHistory {
     }
 
     /// Writes the discriminator's input, newest frame first, or returns false while the history is not full.
-    pub fn input_into(&self, out: &mut [f32; DISCRIMINATOR_INPUT_LEN]) -> bool {
+    ///
+    /// # Panics
+    /// When `out` has not room for one frame of each of [`FRAME_AGES`] exactly.
+    pub fn input_into(&self, out: &mut [f32]) -> bool {
+        assert_eq!(out.len(), self.frame_len * FRAME_AGES.len(), "inputs of a discriminator");
         if !self.is_full() {
             return false;
         }
-        for (chunk, age) in out.chunks_exact_mut(FRAME_LEN).zip(FRAME_AGES) {
-            chunk.copy_from_slice(&self.frames[(self.newest + HISTORY_LEN - age) % HISTORY_LEN]);
+        for (chunk, age) in out.chunks_exact_mut(self.frame_len).zip(FRAME_AGES) {
+            let frame = (self.newest + HISTORY_LEN - age) % HISTORY_LEN;
+            chunk.copy_from_slice(&self.frames[frame * self.frame_len..][..self.frame_len]);
         }
         true
+    }
+
+    /// Frames, slot of the newest and number seen: what its bytes hold.
+    pub(crate) fn parts(&self) -> (&[f32], usize, usize) {
+        (&self.frames, self.newest, self.seen)
+    }
+
+    /// The frames to be overwritten from bytes.
+    pub(crate) fn frames_mut(&mut self) -> &mut [f32] {
+        &mut self.frames
+    }
+
+    /// Sets slot and number from bytes; false when they are out of range.
+    pub(crate) fn set_cursor(&mut self, newest: usize, seen: usize) -> bool {
+        let fits = newest < HISTORY_LEN && seen <= HISTORY_LEN;
+        if fits {
+            (self.newest, self.seen) = (newest, seen);
+        }
+        fits
     }
 }
 
@@ -120,20 +145,15 @@ mod tests {
     use super::*;
 
     #[test]
-    fn lengths_are_those_of_the_design() {
-        assert_eq!((FRAME_LEN, DISCRIMINATOR_INPUT_LEN, HISTORY_LEN), (125, 625, 9));
-    }
-
-    #[test]
     fn history_gives_the_frames_of_the_stated_ages() {
-        let mut history = FrameHistory::default();
-        let mut input = [0.0; DISCRIMINATOR_INPUT_LEN];
+        let mut history = FrameHistory::new(3);
+        let mut input = [0.0; 15];
         for tick in 0..20 {
             assert_eq!(history.input_into(&mut input), tick >= HISTORY_LEN);
             history.push().fill(tick as f32);
         }
         assert!(history.input_into(&mut input));
-        let seen: [f32; 5] = core::array::from_fn(|i| input[i * FRAME_LEN]);
+        let seen: [f32; 5] = core::array::from_fn(|i| input[i * 3]);
         assert_eq!(seen, [19.0, 18.0, 17.0, 15.0, 11.0]);
         history.clear();
         assert!(!history.input_into(&mut input));

@@ -4,7 +4,9 @@
 use alloc::string::String;
 use alloc::vec::Vec;
 
+use crate::ids::{NodeId, PathId};
 use crate::mlp::Mlp;
+use crate::path::{GraphPosition, Path};
 use crate::route::RouteTable;
 
 /// Most policies in one graph.
@@ -15,9 +17,9 @@ pub const MAX_NODES: usize = 64;
 pub struct Node {
     /// Unique name, such as `walk`.
     pub name: String,
-    /// A pelvis lower than this above the ground, metres, means the character has fallen; `None` where nothing
-    /// does. From where it is less, as in a crawl, a character comes here once its pelvis is 0.1 m higher than
-    /// this; a rise of more than 3 s counts as a fall.
+    /// A root lower than this above the ground, metres, means that the character has fallen; `None` where no height
+    /// does. Coming here from a lower gait, such as a crawl, requires standing first: the root 0.1 m above this
+    /// height. Standing up for more than 3 s counts as a fall.
     pub fall_height: Option<f32>,
     /// Speed this policy was trained for, metres per second, where it has one.
     pub speed_mps: Option<f32>,
@@ -27,103 +29,20 @@ pub struct Node {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Edge {
     /// The two nodes.
-    pub nodes: [usize; 2],
-    /// Time a character takes from one end to the other, seconds, above 0.
+    pub nodes: [NodeId; 2],
+    /// Time from the first node to the second, seconds, above 0.
     pub seconds: f32,
+    /// Time from the second node to the first, seconds, above 0.
+    pub seconds_back: f32,
     /// Euclidean distance between the parameters: the cost of the edge in graph search.
     pub distance: f32,
 }
 
-/// An ordered list of nodes, each joined to the next by an edge.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Path {
-    /// Unique name, such as `speed`.
-    pub name: String,
-    /// Nodes from coordinate 0 on; at least two.
-    pub nodes: Vec<usize>,
-}
-
-impl Path {
-    /// The greatest coordinate on the path.
+impl Edge {
+    /// Time to the other end from `node`, seconds.
     #[must_use]
-    pub fn end(&self) -> f32 {
-        (self.nodes.len() - 1) as f32
-    }
-
-    /// The place on the graph of a coordinate: between nodes i and i+1 lies `i + t`. Clamped to the path;
-    /// NaN is its start.
-    #[must_use]
-    pub fn position(&self, coordinate: f32) -> GraphPosition {
-        let coordinate = if coordinate.is_nan() { 0.0 } else { coordinate.clamp(0.0, self.end()) };
-        let segment = (coordinate as usize).min(self.nodes.len() - 2);
-        GraphPosition {
-            from: self.nodes[segment],
-            to: self.nodes[segment + 1],
-            t: coordinate - segment as f32,
-        }
-    }
-
-    /// The coordinate of a place on the graph, if the path runs through it.
-    #[must_use]
-    pub fn coordinate(&self, position: GraphPosition) -> Option<f32> {
-        let at_node = |node: usize| self.nodes.iter().position(|&n| n == node).map(|i| i as f32);
-        if let Some(node) = position.as_node() {
-            return at_node(node);
-        }
-        self.nodes.windows(2).enumerate().find_map(|(i, pair)| {
-            let t = position.along(pair[0], pair[1])?;
-            Some(i as f32 + t)
-        })
-    }
-}
-
-/// A place on the graph: `t` of the way along an edge. A node is any place with `from == to`, or `t` of 0 or 1.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct GraphPosition {
-    /// Node where `t` is 0.
-    pub from: usize,
-    /// Node where `t` is 1.
-    pub to: usize,
-    /// In [0, 1].
-    pub t: f32,
-}
-
-impl GraphPosition {
-    /// The place of a node.
-    #[must_use]
-    pub fn node(node: usize) -> Self {
-        Self { from: node, to: node, t: 0.0 }
-    }
-
-    /// The node, when the place is one.
-    #[must_use]
-    pub fn as_node(self) -> Option<usize> {
-        if self.from == self.to || self.t <= 0.0 {
-            Some(self.from)
-        } else if self.t >= 1.0 {
-            Some(self.to)
-        } else {
-            None
-        }
-    }
-
-    /// The nearer node.
-    #[must_use]
-    pub fn nearest_node(self) -> usize {
-        if self.t < 0.5 { self.from } else { self.to }
-    }
-
-    /// How far along the edge from `a` to `b` the place lies, if it lies on that edge or its ends.
-    #[must_use]
-    pub fn along(self, a: usize, b: usize) -> Option<f32> {
-        match self.as_node() {
-            Some(node) if node == a => Some(0.0),
-            Some(node) if node == b => Some(1.0),
-            Some(_) => None,
-            None if (self.from, self.to) == (a, b) => Some(self.t),
-            None if (self.from, self.to) == (b, a) => Some(1.0 - self.t),
-            None => None,
-        }
+    pub fn seconds_from(&self, node: NodeId) -> f32 {
+        if node == self.nodes[0] { self.seconds } else { self.seconds_back }
     }
 }
 
@@ -188,8 +107,8 @@ pub enum GraphError {
 }
 
 impl PolicyGraph {
-    /// A graph of nodes, edges as (nodes, seconds), and paths; `policies` are the nodes' parameters and
-    /// give the distances.
+    /// A graph of nodes, edges as (nodes, seconds there, seconds back), and paths as (name, nodes). `policies` are the
+    /// nodes' parameters and give the distances.
     ///
     /// # Errors
     /// When a name, number, edge or path is not as [`GraphError`] says.
@@ -198,8 +117,8 @@ impl PolicyGraph {
     /// When there are not as many policies as nodes or their shapes differ; a pack is checked before.
     pub fn from_parts(
         nodes: Vec<Node>,
-        edges: &[([usize; 2], f32)],
-        paths: Vec<Path>,
+        edges: &[([NodeId; 2], [f32; 2])],
+        paths: Vec<(String, Vec<NodeId>)>,
         policies: &[Mlp],
     ) -> Result<Self, GraphError> {
         assert_eq!(nodes.len(), policies.len(), "one policy for each node");
@@ -207,16 +126,16 @@ impl PolicyGraph {
             return Err(GraphError::NodeCount { found: nodes.len() });
         }
         check_names("policy", nodes.iter().map(|n| n.name.as_str()))?;
-        check_names("path", paths.iter().map(|p| p.name.as_str()))?;
+        check_names("path", paths.iter().map(|(name, _)| name.as_str()))?;
         for node in &nodes {
             check_node(node)?;
         }
         let mut checked = Vec::with_capacity(edges.len());
-        for (index, &(ends, seconds)) in edges.iter().enumerate() {
-            let mut edge = Edge { nodes: ends, seconds, distance: 0.0 };
-            let [a, b] = ends;
+        for (index, &(ends, [seconds, seconds_back])) in edges.iter().enumerate() {
+            let mut edge = Edge { nodes: ends, seconds, seconds_back, distance: 0.0 };
+            let [a, b] = ends.map(NodeId::index);
             let joins = a != b && a < nodes.len() && b < nodes.len();
-            let timed = seconds > 0.0 && seconds.is_finite();
+            let timed = [seconds, seconds_back].iter().all(|s| *s > 0.0 && s.is_finite());
             if !joins || !timed {
                 return Err(GraphError::Edge { edge: index, found: edge });
             }
@@ -224,6 +143,7 @@ impl PolicyGraph {
             checked.push(edge);
         }
         let routes = RouteTable::new(nodes.len(), &checked);
+        let paths = paths.into_iter().map(|(name, nodes)| Path { name, nodes }).collect();
         let graph = Self { nodes, edges: checked, paths, routes };
         for path in &graph.paths {
             graph.check_path(path)?;
@@ -232,9 +152,12 @@ impl PolicyGraph {
     }
 
     fn check_path(&self, path: &Path) -> Result<(), GraphError> {
-        let bad = |from, to| Err(GraphError::Path { path: path.name.clone(), from, to });
+        let bad = |from: NodeId, to: Option<NodeId>| {
+            let (from, to) = (from.index(), to.map(NodeId::index));
+            Err(GraphError::Path { path: path.name.clone(), from, to })
+        };
         if path.nodes.len() < 2 {
-            return bad(path.nodes.first().copied().unwrap_or(usize::MAX), None);
+            return bad(path.nodes.first().copied().unwrap_or_default(), None);
         }
         match path.nodes.windows(2).find(|pair| self.edge_between(pair[0], pair[1]).is_none()) {
             Some(pair) => bad(pair[0], Some(pair[1])),
@@ -248,7 +171,16 @@ impl PolicyGraph {
         &self.nodes
     }
 
-    /// Edges, by index.
+    /// A node.
+    ///
+    /// # Panics
+    /// When the id is of another graph.
+    #[must_use]
+    pub fn node(&self, id: NodeId) -> &Node {
+        &self.nodes[id.index()]
+    }
+
+    /// Edges.
     #[must_use]
     pub fn edges(&self) -> &[Edge] {
         &self.edges
@@ -260,27 +192,44 @@ impl PolicyGraph {
         &self.paths
     }
 
+    /// A path.
+    ///
+    /// # Panics
+    /// When the id is of another graph.
+    #[must_use]
+    pub fn path(&self, id: PathId) -> &Path {
+        &self.paths[id.index()]
+    }
+
     /// Cheapest ways between all nodes.
     #[must_use]
     pub fn routes(&self) -> &RouteTable {
         &self.routes
     }
 
-    /// Index of the node called `name`.
+    /// The node called `name`.
     #[must_use]
-    pub fn node_named(&self, name: &str) -> Option<usize> {
-        self.nodes.iter().position(|n| n.name == name)
+    pub fn node_named(&self, name: &str) -> Option<NodeId> {
+        self.nodes.iter().position(|n| n.name == name).map(NodeId::new)
     }
 
-    /// Index of the path called `name`.
+    /// The path called `name`.
     #[must_use]
-    pub fn path_named(&self, name: &str) -> Option<usize> {
-        self.paths.iter().position(|p| p.name == name)
+    pub fn path_named(&self, name: &str) -> Option<PathId> {
+        self.paths.iter().position(|p| p.name == name).map(PathId::new)
+    }
+
+    /// True when `position` lies on a node or an edge of this graph.
+    #[must_use]
+    pub fn contains(&self, position: GraphPosition) -> bool {
+        let nodes = [position.from, position.to].iter().all(|n| n.index() < self.nodes.len());
+        let joined = position.from == position.to || self.edge_between(position.from, position.to).is_some();
+        nodes && joined && (0.0..=1.0).contains(&position.t)
     }
 
     /// The edge that joins two nodes.
     #[must_use]
-    pub fn edge_between(&self, a: usize, b: usize) -> Option<&Edge> {
+    pub fn edge_between(&self, a: NodeId, b: NodeId) -> Option<&Edge> {
         self.edges.iter().find(|e| e.nodes == [a, b] || e.nodes == [b, a])
     }
 }

@@ -1,37 +1,45 @@
 //! Steer physics-based characters by blending the parameters of tiny policies.
 //!
-//! Each skill of a character is one small network, a *policy*; policies that were trained towards each other form a
+//! Each skill of a character is one small network, a *policy*. Policies that were trained towards each other form a
 //! *graph*, and the straight line between the parameters of two neighbours is itself a good policy. A game moves along
 //! that line with an analog trigger. The method is that of *Lightweight Policy-Space Control for Physics-Based
-//! Characters*; this crate is everything of it that a game needs at run time and that is not physics, drawing or
-//! devices.
+//! Characters*. This crate holds what a game needs of it at run time that is not physics, drawing or devices.
 //!
-//! ```no_run
+//! ```
 //! use std::sync::Arc;
-//! use policy_core::{CharacterPack, CharacterState, Command, Controller, Goal};
+//! use policy_core::{CharacterPack, CharacterState, Command, Controller, FixedRate, Goal, glam::Vec2};
 //!
-//! # fn sense() -> CharacterState { CharacterState::default() }
-//! # fn actuate(_: &policy_core::JointTargets) {}
-//! let bytes = std::fs::read("assets/humanoid.pack.safetensors")?;
-//! let pack = Arc::new(CharacterPack::from_bytes(&bytes)?);
-//! let mut controller = Controller::new(pack);
-//! loop {
-//!     let state: CharacterState = sense(); // from your physics engine
-//!     let command = Command {
-//!         target: Some(glam::Vec2::new(5.0, 0.0)),
-//!         goal: Goal::Path { path: 0, coordinate: 1.5 },
-//!         ..Command::default()
-//!     };
-//!     actuate(controller.tick(&state, &command, 1.0 / 30.0)); // 28 joint targets, radians
+//! # fn sense(state: &mut CharacterState) { state.bodies[0].position.z = 0.9 }
+//! # fn actuate(joint_targets: &[f32]) { assert_eq!(joint_targets.len(), 28) }
+//! # let path = concat!(env!("CARGO_MANIFEST_DIR"), "/../../assets/humanoid.pack.safetensors");
+//! let pack = Arc::new(CharacterPack::from_bytes(&std::fs::read(path)?)?);
+//! let speed = pack.graph().path_named("speed").expect("the humanoid has a path of that name");
+//! let mut controller = Controller::new(pack.clone());
+//! let mut state = CharacterState::new(pack.skeleton());
+//! let mut rate = FixedRate::new(pack.control_hz());
+//!
+//! for _frame in 0..60 {
+//!     for _tick in 0..rate.advance(1.0 / 60.0) {
+//!         sense(&mut state); // from your physics engine: world space, z up
+//!         let command = Command {
+//!             target: Some(Vec2::new(5.0, 0.0)),
+//!             goal: Goal::Path { path: speed, coordinate: 1.0 }, // walk
+//!             ..Command::default()
+//!         };
+//!         actuate(controller.tick(&state, &command, rate.period_secs())); // radians
+//!     }
 //! }
-//! # #[allow(unreachable_code)] Ok::<(), Box<dyn std::error::Error>>(())
+//! assert_eq!(pack.graph().node_named("walk"), controller.report().position.as_node());
+//! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 //!
 //! # How the parts hang together
-//! - [`CharacterPack`]: policies, graph, skills, normalisers; immutable, shared by all characters.
-//! - [`Controller`]: the state of one character; [`Controller::tick`] neither allocates nor fails.
+//! - [`CharacterPack`]: skeleton, policies, graph, skills, normalisers; immutable, shared by all characters.
+//! - [`Controller`]: steers one character; [`Controller::tick`] neither allocates nor fails.
+//! - [`ControllerState`]: what changes of a controller, as plain data to save, send and restore.
 //! - [`CommandMapper`]: from a gamepad to a [`Command`]; or make your own.
 //! - [`Blend`], [`Mlp`], [`evaluate_batch_into`]: the parts, for an engine with its own controller or a crowd.
+//! - [`format`](mod@format): the pack's manifest. [`training`]: what only a trainer needs.
 //!
 //! # Conventions
 //! SI units, radians, z up, right-handed. Quaternions are glam's (x, y, z, w). *Parameters* are the numbers of a
@@ -51,20 +59,24 @@ extern crate alloc;
 extern crate std;
 
 mod action;
+mod actuation;
 mod batch;
+pub mod bindings;
 mod blend;
-mod body;
 mod command;
 mod controller;
+mod controller_state;
 mod evaluator;
 mod fall;
 mod features;
+mod fixed_rate;
+pub mod format;
+mod format_one;
 mod gamepad_state;
 mod graph;
 mod heading;
-mod judge;
+mod ids;
 mod kernel;
-mod manifest;
 mod mapper;
 mod mlp;
 mod normaliser;
@@ -72,39 +84,42 @@ mod observation;
 mod pack;
 mod pack_bytes;
 mod pack_error;
+mod pack_parts;
+mod path;
 mod report;
 mod route;
+mod scorer;
+mod skeleton;
 mod skill;
 mod state;
+mod state_bytes;
+pub mod training;
+mod turn_assist;
 
-pub use action::{ActionScaling, ActionScalingError};
+pub use glam;
+
+pub use actuation::{ActuationContract, JointActuation};
 pub use batch::{BatchScratch, evaluate_batch_into};
-pub use blend::{Blend, BlendFull, BlendTerm, MAX_BLEND_TERMS};
-pub use body::{BODY_COUNT, BODY_NAMES, Body, DOF_COUNT, JOINT_NAMES};
+pub use bindings::Bindings;
+pub use blend::Blend;
 pub use command::{Command, Goal};
-pub use controller::{Controller, ControllerConfig};
-pub use evaluator::{BlendEvaluator, BlendMode, Evaluation};
-pub use fall::RISE_SECONDS;
-pub use features::{
-    DISCRIMINATOR_INPUT_LEN, FRAME_AGES, FRAME_LEN, FrameHistory, HISTORY_LEN, discriminator_frame_into,
-};
+pub use controller::{Controller, ControllerConfig, SwapError};
+pub use controller_state::{ControllerState, StateError};
+pub use evaluator::{BlendEvaluator, BlendMode};
+pub use fixed_rate::FixedRate;
 pub use gamepad_state::{Button, Buttons, GamepadState};
-pub use graph::{Edge, GraphError, GraphPosition, MAX_NODES, Node, Path, PolicyGraph};
+pub use graph::PolicyGraph;
 pub use heading::Heading;
+pub use ids::{BodyId, NodeId, PathId, PolicyId, SkillId};
 pub use kernel::Arithmetic;
-pub use manifest::{
-    DISCRIMINATOR_LAYOUT, DiscriminatorEntry, EdgeEntry, Manifest, OBSERVATION_LAYOUT, PACK_FORMAT,
-    PACK_VERSION, PathEntry, PolicyEntry, SkillEntry,
-};
-pub use mapper::{Bindings, CommandMapper};
-pub use mlp::{Layer, MAX_LAYERS, MAX_WIDTH, Mlp, MlpError, MlpScratch};
-pub use normaliser::{LEAST_DEVIATION, NORMALISED_LIMIT, Normaliser, NormaliserError};
-pub use observation::{
-    OBSERVATION_LEN, POLICY_INPUT_LEN, TARGET_LEN, TARGET_RANGE_METRES, observe_into, target_input,
-};
-pub use pack::{CharacterPack, PackTensors};
+pub use mapper::CommandMapper;
+pub use mlp::{Mlp, MlpScratch};
+pub use observation::{observe_into, target_input};
+pub use pack::CharacterPack;
 pub use pack_error::PackError;
-pub use report::TickReport;
-pub use route::RouteTable;
-pub use skill::{EndCondition, Skill, SkillEnd, SkillProgress};
+pub use path::GraphPosition;
+pub use report::{StateFault, TickReport};
+pub use skeleton::Skeleton;
+pub use skill::{Refusal, Skill, SkillEnd};
 pub use state::{BodyState, CharacterState, JointTargets};
+pub use turn_assist::TurnAssist;

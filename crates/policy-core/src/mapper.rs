@@ -1,86 +1,63 @@
-//! From a gamepad to a command: the left stick sets the target, the triggers run along two paths, buttons
-//! ask for skills (paper, section 3.6).
+//! From a gamepad to a command: the left stick sets the target, analog controls run along paths, buttons
+//! request skills (paper, section 3.6).
 
-use alloc::string::String;
 use alloc::vec::Vec;
 
 use glam::Vec2;
 
-use crate::body::Body;
+use crate::bindings::{Bindings, Control, Curve};
 use crate::command::{Command, Goal};
 use crate::gamepad_state::{Button, GamepadState};
 use crate::heading::Heading;
+use crate::ids::{PathId, SkillId};
 use crate::observation::TARGET_RANGE_METRES;
 use crate::pack::CharacterPack;
 use crate::state::CharacterState;
 
-/// Which control does what, by names of the pack. Names the pack lacks do nothing.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Bindings {
-    /// Path of the right trigger. Its first node is for a stick at rest, its second for a full stick.
-    pub speed_path: String,
-    /// Path of the left trigger.
-    pub stance_path: String,
-    /// Path of a style of walking, whose last node is walked as while a button is held.
-    pub style_path: String,
-    /// That button.
-    pub style_button: Button,
-    /// Buttons and the skills they start.
-    pub skills: Vec<(Button, String)>,
+/// A path that a control moves along.
+#[derive(Clone, Copy, Debug)]
+struct BoundPath {
+    path: PathId,
+    end: f32,
+    control: Control,
+    first: f32,
+    needs_stick: bool,
 }
 
-impl Default for Bindings {
-    /// Right trigger `speed`, left trigger `stance`, right shoulder `style`; south `get_up`, east `roll`, north `jump`, west
-    /// `kick`.
-    fn default() -> Self {
-        let skills = [
-            (Button::South, "get_up"),
-            (Button::East, "roll"),
-            (Button::North, "jump"),
-            (Button::West, "kick"),
-        ];
-        Self {
-            speed_path: "speed".into(),
-            stance_path: "stance".into(),
-            style_path: "style".into(),
-            style_button: Button::RightShoulder,
-            skills: skills.into_iter().map(|(b, name)| (b, name.into())).collect(),
-        }
-    }
-}
-
-/// Maps gamepads to commands. Remembers which buttons were held, so it is one for each player.
+/// Maps gamepads to commands. Remembers which buttons were held: one mapper for each player.
 #[derive(Clone, Debug)]
 pub struct CommandMapper {
-    speed: Option<(usize, f32)>,
-    stance: Option<(usize, f32)>,
-    style: Option<(usize, f32)>,
-    style_button: Button,
-    skills: Vec<(Button, usize)>,
+    stick_path: Option<(PathId, f32)>,
+    faster: Control,
+    paths: Vec<BoundPath>,
+    skills: Vec<(Button, SkillId)>,
+    stick: Curve,
+    trigger: Curve,
     last: GamepadState,
 }
 
-/// A trigger below this does not choose its path.
-const TRIGGER_THRESHOLD: f32 = 0.02;
-
-/// A stick below this asks for no direction.
-const STICK_THRESHOLD: f32 = 0.05;
-
 impl CommandMapper {
-    /// A mapper for the paths and skills of `pack`.
+    /// A mapper for the paths and skills of `pack`. Bindings to names that the pack lacks do nothing.
     #[must_use]
     pub fn new(pack: &CharacterPack, bindings: &Bindings) -> Self {
         let path = |name: &str| {
-            let index = pack.graph().path_named(name)?;
-            Some((index, pack.graph().paths()[index].end()))
+            let id = pack.graph().path_named(name)?;
+            Some((id, pack.graph().path(id).end()))
         };
-        let skill = |(button, name): &(Button, String)| Some((*button, pack.skill_named(name)?));
+        let bound = bindings.paths.iter().filter_map(|binding| {
+            let (path, end) = path(&binding.path)?;
+            let first = binding.first.clamp(0.0, end);
+            Some(BoundPath { path, end, control: binding.control, first, needs_stick: binding.needs_stick })
+        });
+        let skill =
+            |(button, name): &(Button, alloc::string::String)| Some((*button, pack.skill_named(name)?));
         Self {
-            speed: path(&bindings.speed_path),
-            stance: path(&bindings.stance_path),
-            style: path(&bindings.style_path),
-            style_button: bindings.style_button,
+            stick_path: path(&bindings.stick_path),
+            faster: bindings.faster,
+            paths: bound.collect(),
             skills: bindings.skills.iter().filter_map(skill).collect(),
+            stick: bindings.stick,
+            trigger: bindings.trigger,
             last: GamepadState::default(),
         }
     }
@@ -88,17 +65,19 @@ impl CommandMapper {
     /// The command of a pad, for a camera that looks along `camera`.
     ///
     /// Stick up goes where the camera looks. The target lies ahead by up to 5 m, as far as the stick is
-    /// pushed; at rest there is none. The speed path's coordinate is the stick's deflection in [0, 1], and
-    /// the right trigger adds the rest of the path; so does the left trigger to the stance path, which it
-    /// chooses when pressed harder than the right. While the button of the style path is held, a pushed stick goes to the end of
-    /// that path, whatever the triggers. Values that are not finite count as zero. Does not allocate.
+    /// pushed; at rest there is none. The bound path whose control is pressed hardest sets the goal, the earlier one of two.
+    /// Otherwise the stick moves along its own path: its deflection in [0, 1], and the faster control adds the
+    /// rest of the path. Values that are not finite count as zero. Does not allocate.
+    ///
+    /// # Panics
+    /// When `state` has no body.
     pub fn map(&mut self, pad: &GamepadState, camera: Heading, state: &CharacterState) -> Command {
         let stick = Vec2::from_array(pad.left_stick.map(finite)).clamp(Vec2::NEG_ONE, Vec2::ONE);
         let length = libm::sqrtf(stick.x * stick.x + stick.y * stick.y);
-        let push = if length < STICK_THRESHOLD { 0.0 } else { length.min(1.0) };
+        let push = self.stick.apply(length.min(1.0));
         let target = (push > 0.0).then(|| {
             let ahead = camera.world_from_heading_2d(Vec2::new(stick.y, -stick.x) / length);
-            state.body(Body::Pelvis).position.truncate() + ahead * (push * TARGET_RANGE_METRES)
+            state.root().position.truncate() + ahead * (push * TARGET_RANGE_METRES)
         });
         let pressed = pad.buttons.pressed_since(self.last.buttons);
         self.last = *pad;
@@ -115,22 +94,34 @@ impl CommandMapper {
         self.last = GamepadState::default();
     }
 
-    fn goal(&self, pad: &GamepadState, push: f32) -> Goal {
-        let (left, right) = (finite(pad.left_trigger), finite(pad.right_trigger));
-        // From the path's second node on, the trigger covers the rest.
-        let along = |(path, end): (usize, f32), start: f32, trigger: f32| Goal::Path {
-            path,
-            coordinate: start + trigger.clamp(0.0, 1.0) * (end - 1.0).max(0.0),
-        };
-        let styled = self.style.filter(|_| push > 0.0 && pad.buttons.contains(self.style_button));
-        if let Some((path, end)) = styled {
-            return Goal::Path { path, coordinate: end };
+    fn value(&self, control: Control, pad: &GamepadState) -> f32 {
+        match control {
+            Control::LeftTrigger => self.trigger.apply(finite(pad.left_trigger).clamp(0.0, 1.0)),
+            Control::RightTrigger => self.trigger.apply(finite(pad.right_trigger).clamp(0.0, 1.0)),
+            Control::Button(button) => f32::from(u8::from(pad.buttons.contains(button))),
+            Control::None => 0.0,
         }
-        match (self.speed, self.stance) {
-            (_, Some(stance)) if left > TRIGGER_THRESHOLD && left >= right => along(stance, 1.0, left),
-            (Some(speed), _) if push > 0.0 => along(speed, push, right),
-            (Some((path, _)), _) => Goal::Path { path, coordinate: 0.0 },
-            _ => Goal::Stay,
+    }
+
+    fn goal(&self, pad: &GamepadState, push: f32) -> Goal {
+        let along = |path: PathId, first: f32, end: f32, value: f32| Goal::Path {
+            path,
+            coordinate: first + value * (end - first).max(0.0),
+        };
+        let faster = self.value(self.faster, pad);
+        let mut hardest: Option<(f32, &BoundPath)> = None;
+        for bound in self.paths.iter().filter(|bound| push > 0.0 || !bound.needs_stick) {
+            let value = self.value(bound.control, pad);
+            let rival = hardest.map_or(0.0, |(value, _)| value);
+            if value > rival && (matches!(bound.control, Control::Button(_)) || value >= faster) {
+                hardest = Some((value, bound));
+            }
+        }
+        match (hardest, self.stick_path) {
+            (Some((value, bound)), _) => along(bound.path, bound.first, bound.end, value),
+            (None, Some((path, end))) if push > 0.0 => along(path, push, end - 1.0 + push, faster),
+            (None, Some((path, _))) => Goal::Path { path, coordinate: 0.0 },
+            (None, None) => Goal::Stay,
         }
     }
 }

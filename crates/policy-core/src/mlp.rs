@@ -150,7 +150,8 @@ impl Layer {
 /// A multilayer perceptron, ReLU between its layers. Immutable; share it between characters.
 ///
 /// ```
-/// use policy_core::{Arithmetic, Layer, Mlp, MlpScratch};
+/// use policy_core::training::{Layer, MlpError};
+/// use policy_core::{Arithmetic, Mlp, MlpScratch};
 /// let hidden = Layer::from_input_major(1, 2, &[1.0, -1.0], &[0.0, 0.0])?;
 /// let output = Layer::from_input_major(2, 1, &[1.0, 1.0], &[0.5])?;
 /// let absolute_plus_half = Mlp::from_layers(vec![hidden, output])?;
@@ -158,7 +159,7 @@ impl Layer {
 /// let mut y = [0.0];
 /// absolute_plus_half.evaluate_into(Arithmetic::Reproducible, &[-3.0], &mut scratch, &mut y);
 /// assert_eq!(y, [3.5]);
-/// # Ok::<(), policy_core::MlpError>(())
+/// # Ok::<(), MlpError>(())
 /// ```
 #[derive(Clone, Debug, PartialEq)]
 pub struct Mlp {

@@ -1,24 +1,17 @@
-//! What a policy sees: 223 numbers about the body and 2 about the target, all in the heading frame.
+//! What a policy sees: the body and the target, all in the heading frame of the root.
 //!
-//! Order: pelvis height above the ground (1); positions of the 14 other bodies relative to the pelvis
-//! (42); x and z axes of all 15 bodies (90); linear velocities (45); angular velocities (45). The
-//! target follows as the last two policy inputs, after normalisation.
+//! Order for B bodies: height of the root above the ground (1); positions of the other bodies relative to the root
+//! (3 B - 3); x and z axes of all bodies (6 B); linear velocities (3 B); angular velocities (3 B). The target
+//! follows as the last two policy inputs, after normalisation.
 
 use glam::{Vec2, Vec3};
 
-use crate::body::{BODY_COUNT, Body};
 use crate::heading::{Heading, axes_xz};
+use crate::skeleton::Skeleton;
 use crate::state::CharacterState;
-
-/// Numbers in an observation, before the target.
-pub const OBSERVATION_LEN: usize =
-    1 + 3 * (BODY_COUNT - 1) + 6 * BODY_COUNT + 3 * BODY_COUNT + 3 * BODY_COUNT;
 
 /// Numbers of the target.
 pub const TARGET_LEN: usize = 2;
-
-/// Inputs of a policy: the normalised observation, then the target.
-pub const POLICY_INPUT_LEN: usize = OBSERVATION_LEN + TARGET_LEN;
 
 /// A target farther away than this, in metres, asks for no more speed.
 pub const TARGET_RANGE_METRES: f32 = 5.0;
@@ -27,21 +20,27 @@ pub const TARGET_RANGE_METRES: f32 = 5.0;
 ///
 /// Every number is finite when the state is ([`CharacterState::is_finite`]). Does not allocate.
 ///
+/// # Panics
+/// When the state does not fit the skeleton, or `out` is not [`Skeleton::observation_len`] long.
+///
 /// ```
-/// use policy_core::{CharacterState, OBSERVATION_LEN, observe_into};
-/// let mut state = CharacterState::default();
+/// use policy_core::{CharacterState, Skeleton, observe_into};
+/// let skeleton = Skeleton::humanoid();
+/// let mut state = CharacterState::new(&skeleton);
 /// state.bodies[0].position.z = 0.9;
-/// let mut observation = [0.0; OBSERVATION_LEN];
-/// observe_into(&state, &mut observation);
+/// let mut observation = vec![0.0; skeleton.observation_len()];
+/// observe_into(&skeleton, &state, &mut observation);
 /// assert_eq!(observation[0], 0.9);
 /// ```
-pub fn observe_into(state: &CharacterState, out: &mut [f32; OBSERVATION_LEN]) {
-    let pelvis = state.body(Body::Pelvis);
-    let heading = Heading::from_rotation(pelvis.rotation);
+pub fn observe_into(skeleton: &Skeleton, state: &CharacterState, out: &mut [f32]) {
+    assert!(state.fits(skeleton), "a state of the skeleton");
+    assert_eq!(out.len(), skeleton.observation_len(), "numbers of an observation");
+    let root = state.root();
+    let heading = Heading::from_rotation(root.rotation);
     let mut cursor = Cursor { out, at: 0 };
-    cursor.push(state.height_of(Body::Pelvis));
+    cursor.push(state.root_height());
     for body in &state.bodies[1..] {
-        cursor.push3(heading.heading_from_world(body.position - pelvis.position));
+        cursor.push3(heading.heading_from_world(body.position - root.position));
     }
     for body in &state.bodies {
         let (x, z) = axes_xz(body.rotation);
@@ -54,21 +53,20 @@ pub fn observe_into(state: &CharacterState, out: &mut [f32; OBSERVATION_LEN]) {
     for body in &state.bodies {
         cursor.push3(heading.heading_from_world(body.angular_velocity));
     }
-    debug_assert_eq!(cursor.at, OBSERVATION_LEN);
 }
 
 /// The target as a policy sees it: its direction in the heading frame times min(distance, 5 m) / 2.
 ///
-/// `target_world` is a point on the ground in metres. A target below the pelvis gives zero.
+/// `target_world` is a point on the ground in metres. A target below the root gives zero.
 #[must_use]
 pub fn target_input(state: &CharacterState, target_world: Vec2) -> [f32; TARGET_LEN] {
-    let pelvis = state.body(Body::Pelvis);
-    let to_target = target_world - pelvis.position.truncate();
+    let root = state.root();
+    let to_target = target_world - root.position.truncate();
     let distance = libm::sqrtf(to_target.x * to_target.x + to_target.y * to_target.y);
     if !distance.is_finite() || distance < 1e-6 {
         return [0.0; TARGET_LEN];
     }
-    let heading = Heading::from_rotation(pelvis.rotation);
+    let heading = Heading::from_rotation(root.rotation);
     let scale = distance.min(TARGET_RANGE_METRES) / (2.0 * distance);
     let local = heading.heading_from_world_2d(to_target) * scale;
     [local.x, local.y]
@@ -101,7 +99,7 @@ mod tests {
 
     fn turned_and_moved(state: &CharacterState, turn: f32, shift: Vec3) -> CharacterState {
         let q = Quat::from_rotation_z(turn);
-        let mut moved = *state;
+        let mut moved = state.clone();
         for b in &mut moved.bodies {
             b.position = q * b.position + shift;
             b.rotation = q * b.rotation;
@@ -113,7 +111,7 @@ mod tests {
     }
 
     fn some_state() -> CharacterState {
-        let mut state = CharacterState::default();
+        let mut state = CharacterState::new(&Skeleton::humanoid());
         for (i, b) in state.bodies.iter_mut().enumerate() {
             let f = i as f32;
             b.position = Vec3::new(0.1 * f, 0.05 * f - 0.2, 1.0 - 0.03 * f);
@@ -128,16 +126,17 @@ mod tests {
     fn observation_does_not_depend_on_place_or_heading() {
         let state = some_state();
         let moved = turned_and_moved(&state, 2.1, Vec3::new(3.0, -7.0, 0.4));
-        let (mut a, mut b) = ([0.0; OBSERVATION_LEN], [0.0; OBSERVATION_LEN]);
-        observe_into(&state, &mut a);
-        observe_into(&moved, &mut b);
+        let skeleton = Skeleton::humanoid();
+        let (mut a, mut b) = ([0.0; 223], [0.0; 223]);
+        observe_into(&skeleton, &state, &mut a);
+        observe_into(&skeleton, &moved, &mut b);
         let worst = a.iter().zip(&b).map(|(a, b)| (a - b).abs()).fold(0.0, f32::max);
         assert!(worst < 2e-6, "{worst}");
     }
 
     #[test]
     fn target_is_bounded_and_in_the_heading_frame() {
-        let mut state = CharacterState::default();
+        let mut state = CharacterState::new(&Skeleton::humanoid());
         assert_eq!(target_input(&state, Vec2::new(2.0, 0.0)), [1.0, 0.0]);
         assert_eq!(target_input(&state, Vec2::new(50.0, 0.0)), [2.5, 0.0]);
         assert_eq!(target_input(&state, Vec2::ZERO), [0.0, 0.0]);

@@ -6,6 +6,7 @@ use crate::action::ActionScalingError;
 use crate::graph::GraphError;
 use crate::mlp::MlpError;
 use crate::normaliser::NormaliserError;
+use crate::skeleton::SkeletonError;
 
 /// Why a character pack can't be made or read. Nothing is half loaded: there is a whole pack or this.
 #[derive(Debug, thiserror::Error)]
@@ -68,6 +69,45 @@ pub enum PackError {
         /// How many there are.
         found: usize,
     },
+    /// There are more of a thing than a pack may have.
+    #[error("expected at most {most} {what}, found {found}")]
+    TooMany {
+        /// What is counted.
+        what: &'static str,
+        /// The limit.
+        most: usize,
+        /// How many there are.
+        found: usize,
+    },
+    /// A name is too long.
+    #[error("expected a {kind} name of at most {most} bytes, found {found}")]
+    LongName {
+        /// What is named.
+        kind: &'static str,
+        /// The limit, bytes.
+        most: usize,
+        /// Its length, bytes.
+        found: usize,
+    },
+    /// A skill can't be started from a node of a path.
+    #[error("expected a way from policy \"{from}\" to an entry of skill \"{skill}\", found none")]
+    Unreachable {
+        /// Name of the skill.
+        skill: String,
+        /// Name of the node.
+        from: String,
+    },
+    /// The file was changed after it was written.
+    #[error("expected checksum {expected}, found {found}: the file is damaged")]
+    Checksum {
+        /// The checksum in the file.
+        expected: String,
+        /// That of its bytes.
+        found: String,
+    },
+    /// The skeleton is not valid.
+    #[error("skeleton: {0}")]
+    Skeleton(#[from] SkeletonError),
     /// A tensor is missing.
     #[error("expected tensor \"{name}\", found none")]
     NoTensor {
@@ -81,12 +121,12 @@ pub enum PackError {
         name: String,
     },
     /// A tensor has another type or shape.
-    #[error("expected tensor \"{name}\" to be F32 {expected:?}, found {found}")]
+    #[error("expected tensor \"{name}\" to be {expected}, found {found}")]
     TensorShape {
         /// Its name.
         name: String,
-        /// The shape it must have.
-        expected: alloc::vec::Vec<usize>,
+        /// The type and shape it must have.
+        expected: String,
         /// Its type and shape.
         found: String,
     },

@@ -4,7 +4,9 @@
 
 use alloc::vec::Vec;
 
-use crate::graph::{Edge, GraphPosition, PolicyGraph};
+use crate::graph::{Edge, PolicyGraph};
+use crate::ids::NodeId;
+use crate::path::GraphPosition;
 
 /// Cheapest ways between all nodes; the cost of an edge is the distance between its policies' parameters.
 #[derive(Clone, Debug)]
@@ -26,7 +28,7 @@ impl RouteTable {
             cost[i * nodes + i] = 0.0;
         }
         for edge in edges {
-            let [a, b] = edge.nodes;
+            let [a, b] = edge.nodes.map(NodeId::index);
             let distance = edge.distance.max(1e-6);
             for (a, b) in [(a, b), (b, a)] {
                 cost[a * nodes + b] = cost[a * nodes + b].min(distance);
@@ -51,7 +53,8 @@ impl RouteTable {
     /// # Panics
     /// When a node is not in the graph.
     #[must_use]
-    pub fn cost(&self, from: usize, to: usize) -> f32 {
+    pub fn cost(&self, from: NodeId, to: NodeId) -> f32 {
+        let (from, to) = (from.index(), to.index());
         assert!(from < self.nodes && to < self.nodes, "nodes of the graph");
         self.cost[from * self.nodes + to]
     }
@@ -61,8 +64,9 @@ impl RouteTable {
     /// # Panics
     /// When a node is not in the graph.
     #[must_use]
-    pub fn next(&self, from: usize, to: usize) -> Option<usize> {
-        (from != to && self.cost(from, to).is_finite()).then(|| self.next[from * self.nodes + to])
+    pub fn next(&self, from: NodeId, to: NodeId) -> Option<NodeId> {
+        (from != to && self.cost(from, to).is_finite())
+            .then(|| NodeId::new(self.next[from.index() * self.nodes + to.index()]))
     }
 
     /// Nodes of the cheapest way, both ends included; empty where there is none. Allocates.
@@ -70,7 +74,7 @@ impl RouteTable {
     /// # Panics
     /// When a node is not in the graph.
     #[must_use]
-    pub fn route(&self, from: usize, to: usize) -> Vec<usize> {
+    pub fn route(&self, from: NodeId, to: NodeId) -> Vec<NodeId> {
         if !self.cost(from, to).is_finite() {
             return Vec::new();
         }
@@ -85,8 +89,8 @@ impl RouteTable {
 }
 
 impl PolicyGraph {
-    /// Moves a place on the graph for `dt_secs` towards `goal`, along the cheapest way, each edge at the rate
-    /// that its [`Edge::seconds`] says. Stays where there is no way. Does not allocate.
+    /// Moves a position on the graph for `dt_secs` towards `goal`, along the cheapest way. Each edge is crossed at the
+    /// rate of [`Edge::seconds`] or [`Edge::seconds_back`]. Stays where there is no way. Does not allocate.
     pub fn travel(&self, position: &mut GraphPosition, goal: GraphPosition, dt_secs: f32) {
         let mut left = if dt_secs > 0.0 { dt_secs } else { 0.0 };
         // Every round but the last ends at a node nearer to the goal.
@@ -96,7 +100,8 @@ impl PolicyGraph {
             }
             let Some((toward, t)) = self.next_leg(*position, goal) else { return };
             *position = toward;
-            let seconds = self.edge_between(toward.from, toward.to).map_or(0.0, |e| e.seconds);
+            let start = if t >= toward.t { toward.from } else { toward.to };
+            let seconds = self.edge_between(toward.from, toward.to).map_or(0.0, |e| e.seconds_from(start));
             let needed = (t - toward.t).abs() * seconds;
             if needed > left {
                 position.t += (t - toward.t).signum() * left / seconds;
@@ -107,7 +112,7 @@ impl PolicyGraph {
         }
     }
 
-    /// The present place on the edge to travel next, and how far along it to go; `None` at the goal or where
+    /// The present position on the edge to travel next, and how far along it to go; `None` at the goal or where
     /// there is no way.
     fn next_leg(&self, position: GraphPosition, goal: GraphPosition) -> Option<(GraphPosition, f32)> {
         let Some(node) = position.as_node() else {
@@ -139,7 +144,7 @@ impl PolicyGraph {
         self.edge_between(goal.from, goal.to).map_or(f32::INFINITY, |e| e.distance)
     }
 
-    fn cost_to(&self, node: usize, goal: GraphPosition) -> f32 {
+    fn cost_to(&self, node: NodeId, goal: GraphPosition) -> f32 {
         match goal.as_node() {
             Some(target) => self.routes().cost(node, target),
             None => {
@@ -151,6 +156,6 @@ impl PolicyGraph {
     }
 }
 
-fn leg(from: usize, to: usize) -> GraphPosition {
+fn leg(from: NodeId, to: NodeId) -> GraphPosition {
     GraphPosition { from, to, t: 0.0 }
 }

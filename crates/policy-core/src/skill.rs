@@ -4,25 +4,23 @@
 use alloc::string::String;
 use alloc::vec::Vec;
 
-use serde::{Deserialize, Serialize};
+use crate::ids::{DiscriminatorId, NodeId, PolicyId, SkillId};
 
 /// When an episodic skill ends.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct EndCondition {
     /// The discriminator's score, in [0, 1], must rise to this to start counting.
     pub threshold: f32,
-    /// The count goes on until the score falls this far below the threshold, in [0, 1].
+    /// The time runs on until the score falls this far below the threshold, in [0, 1].
     pub hysteresis: f32,
-    /// The skill ends when it has counted this many control ticks, at least 1.
-    pub ticks: u32,
-    /// No end before this, seconds.
+    /// The skill ends when the score has held this long, seconds, above 0.
+    pub hold_seconds: f32,
+    /// It does not end before this, seconds.
     pub minimum_seconds: f32,
-    /// The end in any case, seconds.
+    /// It ends after this in any case, seconds.
     pub limit_seconds: f32,
-    /// Nothing is counted while the pelvis is lower than this above the ground, metres: a discriminator knows the motion
-    /// it returns to and what comes near it, not a heap of limbs. 0 for no such condition.
-    #[serde(default)]
+    /// A score counts only while the root is at least this high above the ground, metres: a discriminator knows the motion that
+    /// it was trained on, not a heap of limbs. 0 for no such condition.
     pub minimum_height: f32,
 }
 
@@ -31,14 +29,14 @@ pub struct EndCondition {
 pub struct Skill {
     /// Unique name.
     pub name: String,
-    /// Index of the policy that runs.
-    pub policy: usize,
+    /// The policy that runs.
+    pub policy: PolicyId,
     /// Nodes from which it may start; empty: any.
-    pub entry: Vec<usize>,
+    pub entry: Vec<NodeId>,
     /// Node that runs afterwards.
-    pub returns_to: usize,
-    /// Index of the discriminator that ends it.
-    pub discriminator: Option<usize>,
+    pub returns_to: NodeId,
+    /// The discriminator that ends it; without one the time limit does.
+    pub discriminator: Option<DiscriminatorId>,
     /// When it ends.
     pub end: EndCondition,
 }
@@ -46,7 +44,7 @@ pub struct Skill {
 impl Skill {
     /// True when it may start from `node`.
     #[must_use]
-    pub fn starts_from(&self, node: usize) -> bool {
+    pub fn starts_from(&self, node: NodeId) -> bool {
         self.entry.is_empty() || self.entry.contains(&node)
     }
 }
@@ -58,19 +56,28 @@ pub enum SkillEnd {
     Recognised,
     /// The time limit was reached.
     TimeLimit,
-    /// Another skill was requested, or the controller was reset.
+    /// Another skill took over, or the controller was reset or put elsewhere.
     Interrupted,
+}
+
+/// Why a requested skill does not start.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Refusal {
+    /// The recovery skill was requested while the character is up.
+    Upright,
+    /// The pack has no such skill.
+    Unknown,
 }
 
 /// Progress of a running skill.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SkillProgress {
-    /// Index of the skill.
-    pub skill: usize,
+    /// The skill.
+    pub skill: SkillId,
     /// Seconds since it started.
     pub seconds: f32,
-    /// Ticks counted towards the end.
-    pub counted: u32,
+    /// Seconds that the score has held.
+    pub held_seconds: f32,
     /// Latest score of the discriminator, in [0, 1]; `None` before there is one.
     pub score: Option<f32>,
 }
@@ -78,27 +85,31 @@ pub struct SkillProgress {
 impl SkillProgress {
     /// A skill that starts now.
     #[must_use]
-    pub fn start(skill: usize) -> Self {
-        Self { skill, seconds: 0.0, counted: 0, score: None }
+    pub fn start(skill: SkillId) -> Self {
+        Self { skill, seconds: 0.0, held_seconds: 0.0, score: None }
     }
 
-    /// Takes one control tick, the discriminator's score, if there is one, and the pelvis' height above the ground, metres;
-    /// says whether the skill ends.
+    /// Takes one control tick: the discriminator's score, if there is one, and the root's height above the ground, metres.
+    /// Returns why the skill ends, if it does.
     pub fn tick(
         &mut self,
         end: &EndCondition,
         score: Option<f32>,
-        pelvis_height: f32,
+        root_height: f32,
         dt_secs: f32,
     ) -> Option<SkillEnd> {
         self.seconds += dt_secs;
         self.score = score;
         let release = end.threshold - end.hysteresis;
-        self.counted = match score.filter(|_| pelvis_height >= end.minimum_height) {
-            Some(s) if s >= end.threshold || (self.counted > 0 && s >= release) => self.counted + 1,
-            _ => 0,
+        self.held_seconds = match score.filter(|_| root_height >= end.minimum_height) {
+            Some(s) if s >= end.threshold || (self.held_seconds > 0.0 && s >= release) => {
+                self.held_seconds + dt_secs
+            }
+            _ => 0.0,
         };
-        if self.seconds >= end.minimum_seconds && self.counted >= end.ticks {
+        // Half a tick of slack, so that rounding does not decide.
+        let held = self.held_seconds > 0.0 && self.held_seconds + 0.5 * dt_secs >= end.hold_seconds;
+        if self.seconds >= end.minimum_seconds && held {
             Some(SkillEnd::Recognised)
         } else if self.seconds >= end.limit_seconds {
             Some(SkillEnd::TimeLimit)
@@ -115,7 +126,7 @@ mod tests {
     const END: EndCondition = EndCondition {
         threshold: 0.6,
         hysteresis: 0.2,
-        ticks: 3,
+        hold_seconds: 0.3,
         minimum_seconds: 0.2,
         limit_seconds: 2.0,
         minimum_height: 0.7,
@@ -124,7 +135,7 @@ mod tests {
     const DT: f32 = 0.1;
 
     fn run(scores: &[f32]) -> Option<(usize, SkillEnd)> {
-        let mut progress = SkillProgress::start(0);
+        let mut progress = SkillProgress::start(SkillId::new(0));
         scores.iter().enumerate().find_map(|(i, s)| progress.tick(&END, Some(*s), UP, DT).map(|end| (i, end)))
     }
 
@@ -140,7 +151,7 @@ mod tests {
 
     #[test]
     fn it_does_not_end_before_the_minimum_and_always_at_the_limit() {
-        let mut progress = SkillProgress::start(0);
+        let mut progress = SkillProgress::start(SkillId::new(0));
         let end = EndCondition { minimum_seconds: 1.0, ..END };
         let at = (0..).find(|_| progress.tick(&end, Some(1.0), UP, DT).is_some());
         assert!(at == Some(9) || at == Some(10), "{at:?}");
@@ -149,7 +160,7 @@ mod tests {
 
     #[test]
     fn it_does_not_end_on_the_ground_whatever_the_score() {
-        let mut progress = SkillProgress::start(0);
+        let mut progress = SkillProgress::start(SkillId::new(0));
         for _ in 0..10 {
             assert_eq!(progress.tick(&END, Some(1.0), 0.2, DT), None);
         }

@@ -1,8 +1,12 @@
 //! What the physics tells of a character each control tick. SI units, world space, z up.
 
+use alloc::vec::Vec;
+use core::ops::{Deref, DerefMut};
+
 use glam::{Quat, Vec3};
 
-use crate::body::{BODY_COUNT, Body, DOF_COUNT};
+use crate::ids::BodyId;
+use crate::skeleton::Skeleton;
 
 /// Motion of one body: its frame (not its centre of mass) in world space.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -30,29 +34,85 @@ impl Default for BodyState {
 
 /// Everything a [`Controller`](crate::Controller) needs to sense of its character.
 ///
-/// Positions are single precision: within 1 km of the origin they lose less than 0.1 mm. A larger
-/// world subtracts an origin of its own before it fills this in, from the target too.
-#[derive(Clone, Copy, Debug, PartialEq)]
+/// It is sized for a skeleton once; a tick overwrites its numbers. Positions are single precision: within 1 km of
+/// the origin they lose less than 0.1 mm. A larger world subtracts an origin of its own first, from the target too.
+#[derive(Clone, Debug, PartialEq)]
 pub struct CharacterState {
-    /// One entry for each [`Body`], in index order.
-    pub bodies: [BodyState; BODY_COUNT],
-    /// Angular velocity of every hinge in the order of [`JOINT_NAMES`](crate::JOINT_NAMES), radians per second.
-    pub joint_velocities: [f32; DOF_COUNT],
-    /// Height of the ground below the pelvis, metres.
+    /// One entry for each body of the skeleton, in its order.
+    pub bodies: Vec<BodyState>,
+    /// Angular velocity of every hinge in the skeleton's order, radians per second.
+    pub joint_velocities: Vec<f32>,
+    /// Height of the ground below the root, metres.
     pub ground_height: f32,
 }
 
 impl CharacterState {
-    /// Motion of `body`.
+    /// A state at the origin, at rest. Allocates.
     #[must_use]
-    pub fn body(&self, body: Body) -> &BodyState {
-        &self.bodies[body.index()]
+    pub fn new(skeleton: &Skeleton) -> Self {
+        Self {
+            bodies: alloc::vec![BodyState::default(); skeleton.body_count()],
+            joint_velocities: alloc::vec![0.0; skeleton.joint_count()],
+            ground_height: 0.0,
+        }
     }
 
-    /// Height of the frame of `body` above the ground below the pelvis, metres.
+    /// Motion of a body.
+    ///
+    /// # Panics
+    /// When the state has no such body.
     #[must_use]
-    pub fn height_of(&self, body: Body) -> f32 {
-        self.body(body).position.z - self.ground_height
+    pub fn body(&self, id: BodyId) -> &BodyState {
+        &self.bodies[id.index()]
+    }
+
+    /// Motion of a body, to be written.
+    ///
+    /// # Panics
+    /// When the state has no such body.
+    #[must_use]
+    pub fn body_mut(&mut self, id: BodyId) -> &mut BodyState {
+        &mut self.bodies[id.index()]
+    }
+
+    /// Motion of the root.
+    ///
+    /// # Panics
+    /// When the state has no body.
+    #[must_use]
+    pub fn root(&self) -> &BodyState {
+        &self.bodies[0]
+    }
+
+    /// Height of a body's frame above the ground below the root, metres.
+    ///
+    /// # Panics
+    /// When the state has no such body.
+    #[must_use]
+    pub fn height_of(&self, id: BodyId) -> f32 {
+        self.body(id).position.z - self.ground_height
+    }
+
+    /// Height of the root's frame above the ground below it, metres.
+    ///
+    /// # Panics
+    /// When the state has no body.
+    #[must_use]
+    pub fn root_height(&self) -> f32 {
+        self.root().position.z - self.ground_height
+    }
+
+    /// True when it has the bodies and hinges of `skeleton`.
+    #[must_use]
+    pub fn fits(&self, skeleton: &Skeleton) -> bool {
+        self.bodies.len() == skeleton.body_count() && self.joint_velocities.len() == skeleton.joint_count()
+    }
+
+    /// Copies the numbers of `other`. Allocates only when the sizes differ.
+    pub fn copy_from(&mut self, other: &Self) {
+        self.bodies.clone_from(&other.bodies);
+        self.joint_velocities.clone_from(&other.joint_velocities);
+        self.ground_height = other.ground_height;
     }
 
     /// True when every number is finite.
@@ -69,22 +129,34 @@ impl CharacterState {
     }
 }
 
-impl Default for CharacterState {
-    fn default() -> Self {
-        Self {
-            bodies: [BodyState::default(); BODY_COUNT],
-            joint_velocities: [0.0; DOF_COUNT],
-            ground_height: 0.0,
-        }
+/// Joint angles the motors are to reach, radians, in the order of the skeleton's hinges.
+#[derive(Clone, Debug, PartialEq)]
+pub struct JointTargets(Vec<f32>);
+
+impl JointTargets {
+    /// All zero. Allocates.
+    #[must_use]
+    pub fn new(skeleton: &Skeleton) -> Self {
+        Self(alloc::vec![0.0; skeleton.joint_count()])
     }
 }
 
-/// Joint angles the motors are to reach, radians, in the order of [`JOINT_NAMES`](crate::JOINT_NAMES).
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct JointTargets(pub [f32; DOF_COUNT]);
+impl From<Vec<f32>> for JointTargets {
+    fn from(radians: Vec<f32>) -> Self {
+        Self(radians)
+    }
+}
 
-impl Default for JointTargets {
-    fn default() -> Self {
-        Self([0.0; DOF_COUNT])
+impl Deref for JointTargets {
+    type Target = [f32];
+
+    fn deref(&self) -> &[f32] {
+        &self.0
+    }
+}
+
+impl DerefMut for JointTargets {
+    fn deref_mut(&mut self) -> &mut [f32] {
+        &mut self.0
     }
 }

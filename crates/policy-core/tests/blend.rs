@@ -2,10 +2,10 @@
 
 mod common;
 
-use common::{Noise, POLICY_SIZES, mlp};
+use common::{Noise, POLICY_SIZES, mlp, p};
+use policy_core::training::{BlendTerm, Evaluation};
 use policy_core::{
-    Arithmetic, BatchScratch, Blend, BlendEvaluator, BlendMode, BlendTerm, Evaluation, Mlp, MlpScratch,
-    evaluate_batch_into,
+    Arithmetic, BatchScratch, Blend, BlendEvaluator, BlendMode, Mlp, MlpScratch, evaluate_batch_into,
 };
 use proptest::prelude::*;
 
@@ -18,7 +18,7 @@ fn plain(policies: &[Mlp], blend: &Blend, input: &[f32]) -> Vec<f64> {
         let (mut weight, mut bias) =
             (vec![0.0; shape.inputs() * shape.outputs()], vec![0.0; shape.outputs()]);
         for term in blend.terms() {
-            let (layer, w) = (&policies[term.policy].layers()[l], f64::from(term.weights[l]));
+            let (layer, w) = (&policies[term.policy.index()].layers()[l], f64::from(term.weights[l]));
             weight.iter_mut().zip(layer.weight()).for_each(|(s, p)| *s += w * f64::from(p));
             bias.iter_mut().zip(layer.bias()).for_each(|(s, p)| *s += w * f64::from(p));
         }
@@ -66,7 +66,7 @@ proptest! {
         let input = Noise(seed).numbers(225, 3.0);
         let mut blend = Blend::default();
         for (policy, weights) in weights.into_iter().enumerate() {
-            blend.push(BlendTerm { policy, weights }).unwrap();
+            blend.push(BlendTerm { policy: p(policy), weights }).unwrap();
         }
         let expected = plain(&policies, &blend, &input);
         for arithmetic in [Arithmetic::Reproducible, Arithmetic::Fused] {
@@ -92,7 +92,7 @@ proptest! {
                 let mut alone = [0.0; 28];
                 let mut scratch = MlpScratch::for_mlp(&policies[0]);
                 policies[policy].evaluate_into(arithmetic, &input, &mut scratch, &mut alone);
-                let blended = evaluate(&policies, &Blend::between(0, 1, t), arithmetic, &input);
+                let blended = evaluate(&policies, &Blend::between(p(0), p(1), t), arithmetic, &input);
                 prop_assert_eq!(alone.map(f32::to_bits), blended.map(f32::to_bits));
             }
         }
@@ -106,9 +106,9 @@ fn a_batch_gives_every_character_its_own_blend() {
     let count = 131;
     let blends: Vec<Blend> = (0..count)
         .map(|i| match i % 3 {
-            0 => Blend::single(i % 5),
-            1 => Blend::between(i % 4, i % 4 + 1, noise.number().abs()),
-            _ => Blend::between_per_layer(i % 5, (i + 2) % 5, [0.1, noise.number().abs(), 0.9, 0.0]),
+            0 => Blend::single(p(i % 5)),
+            1 => Blend::between(p(i % 4), p(i % 4 + 1), noise.number().abs()),
+            _ => Blend::between_per_layer(p(i % 5), p((i + 2) % 5), [0.1, noise.number().abs(), 0.9, 0.0]),
         })
         .collect();
     let inputs = noise.numbers(count * 225, 2.0);
@@ -130,9 +130,9 @@ fn reproducible_arithmetic_gives_the_pinned_bits() {
     for seed in 0..50 {
         let input = Noise(seed * 77 + 1).numbers(225, 2.0);
         let blend = match seed % 3 {
-            0 => Blend::single(0),
-            1 => Blend::between(0, 1, seed as f32 / 50.0),
-            _ => Blend::between_per_layer(1, 2, [0.25, 0.5, 0.75, 0.0]),
+            0 => Blend::single(p(0)),
+            1 => Blend::between(p(0), p(1), seed as f32 / 50.0),
+            _ => Blend::between_per_layer(p(1), p(2), [0.25, 0.5, 0.75, 0.0]),
         };
         for value in evaluate(&policies, &blend, Arithmetic::Reproducible, &input) {
             hash = (hash ^ u64::from(value.to_bits())).wrapping_mul(0x0100_0000_01b3);
@@ -154,18 +154,22 @@ fn a_resting_blend_is_cached_and_a_moving_one_is_not() {
         (evaluator.evaluate_into(&policies, &blend, mode, &input, &mut out), out)
     };
     let parameters = BlendMode::Parameters;
-    let (first, moving) = tick(Blend::between(0, 1, 0.3), parameters);
+    let (first, moving) = tick(Blend::between(p(0), p(1), 0.3), parameters);
     assert_eq!(first, Evaluation::Fused);
-    let kinds: Vec<Evaluation> = (0..8).map(|_| tick(Blend::between(0, 1, 0.3), parameters).0).collect();
+    let kinds: Vec<Evaluation> =
+        (0..8).map(|_| tick(Blend::between(p(0), p(1), 0.3), parameters).0).collect();
     assert!(
         kinds[..3].iter().all(|k| *k == Evaluation::Fused)
             && kinds[4..].iter().all(|k| *k == Evaluation::Cached)
     );
-    let (_, resting) = tick(Blend::between(0, 1, 0.3), parameters);
+    let (_, resting) = tick(Blend::between(p(0), p(1), 0.3), parameters);
     assert_close(&resting, &moving.map(f64::from));
-    assert_eq!(tick(Blend::between(0, 1, 0.31), parameters).0, Evaluation::Fused);
-    assert_eq!(tick(Blend::between(0, 1, 0.31), BlendMode::Actions).0, Evaluation::Actions);
-    assert_eq!(tick(Blend::between(0, 1, 0.31), BlendMode::Switch), tick(Blend::single(0), parameters));
+    assert_eq!(tick(Blend::between(p(0), p(1), 0.31), parameters).0, Evaluation::Fused);
+    assert_eq!(tick(Blend::between(p(0), p(1), 0.31), BlendMode::Actions).0, Evaluation::Actions);
+    assert_eq!(
+        tick(Blend::between(p(0), p(1), 0.31), BlendMode::Switch),
+        tick(Blend::single(p(0)), parameters)
+    );
 }
 
 #[test]
@@ -174,8 +178,14 @@ fn blended_actions_are_the_sum_of_the_policies_actions() {
     let input = Noise(5).numbers(225, 1.0);
     let mut evaluator = BlendEvaluator::new(&policies[0], Arithmetic::Reproducible, false);
     let mut out = [0.0; 28];
-    evaluator.evaluate_into(&policies, &Blend::between(0, 1, 0.25), BlendMode::Actions, &input, &mut out);
-    let [a, b] = [0, 1].map(|p| evaluate(&policies, &Blend::single(p), Arithmetic::Reproducible, &input));
+    evaluator.evaluate_into(
+        &policies,
+        &Blend::between(p(0), p(1), 0.25),
+        BlendMode::Actions,
+        &input,
+        &mut out,
+    );
+    let [a, b] = [0, 1].map(|i| evaluate(&policies, &Blend::single(p(i)), Arithmetic::Reproducible, &input));
     for i in 0..28 {
         assert!((out[i] - (0.75 * a[i] + 0.25 * b[i])).abs() < 1e-6);
     }

@@ -4,21 +4,16 @@ mod common;
 
 use std::sync::Arc;
 
-use glam::{Quat, Vec2, Vec3};
+use common::{n, p, standing};
+use policy_core::bindings::{Control, PathBinding};
+use policy_core::glam::{Quat, Vec2, Vec3};
 use policy_core::{
-    Bindings, Blend, BlendMode, Body, Button, Buttons, CharacterPack, CharacterState, Command, CommandMapper,
-    Controller, ControllerConfig, GamepadState, Goal, GraphPosition, Heading, SkillEnd,
+    Bindings, Blend, BlendMode, Button, Buttons, CharacterPack, Command, CommandMapper, Controller,
+    ControllerConfig, GamepadState, Goal, GraphPosition, Heading, PathId, SkillEnd, SkillId, StateFault,
 };
 use proptest::prelude::*;
 
 const DT: f32 = 1.0 / 30.0;
-
-fn standing() -> CharacterState {
-    let mut state = CharacterState::default();
-    state.bodies.iter_mut().for_each(|b| b.position.z = 0.9);
-    state.bodies[Body::Head.index()].position.z = 1.4;
-    state
-}
 
 fn controller(logit: f32, start: &str) -> Controller {
     let pack: CharacterPack = common::pack(logit);
@@ -26,14 +21,18 @@ fn controller(logit: f32, start: &str) -> Controller {
     Controller::with_config(Arc::new(pack), ControllerConfig { start, ..ControllerConfig::default() })
 }
 
-fn skill(controller: &Controller, name: &str) -> usize {
+fn along(path: usize, coordinate: f32) -> Goal {
+    Goal::Path { path: PathId::new(path), coordinate }
+}
+
+fn skill(controller: &Controller, name: &str) -> SkillId {
     controller.pack().skill_named(name).unwrap()
 }
 
 #[test]
 fn it_travels_to_the_goal_at_a_limited_rate() {
     let mut controller = controller(0.0, "idle");
-    let command = Command { goal: Goal::Path { path: 0, coordinate: 2.5 }, ..Command::default() };
+    let command = Command { goal: along(0, 2.5), ..Command::default() };
     for tick in 1..=60 {
         controller.tick(&standing(), &command, DT);
         let coordinate =
@@ -47,14 +46,14 @@ fn it_travels_to_the_goal_at_a_limited_rate() {
 fn the_joint_targets_are_those_of_the_blended_policy() {
     let mut controller = controller(0.0, "walk");
     let command = Command { target: Some(Vec2::new(3.0, 0.0)), ..Command::default() };
-    let targets = *controller.tick(&standing(), &command, DT);
+    let targets = controller.tick(&standing(), &command, DT).clone();
     let mut action = [0.0; 28];
-    let walk = &controller.pack().policies()[controller.pack().graph().node_named("walk").unwrap()];
+    let walk = &controller.pack().policies()[controller.pack().policy_named("walk").unwrap().index()];
     let mut scratch = policy_core::MlpScratch::for_mlp(walk);
     let input = controller.policy_input();
     assert_eq!(input[223..], [1.5, 0.0]);
     walk.evaluate_into(policy_core::Arithmetic::Reproducible, input, &mut scratch, &mut action);
-    assert_eq!(targets.0, action, "centres are zero and gains one");
+    assert_eq!(*targets, action, "centres are zero and gains one");
     assert!(action.iter().any(|a| *a != 0.0));
 }
 
@@ -65,7 +64,7 @@ fn a_recognised_skill_returns_and_an_unrecognised_one_runs_to_its_limit() {
         let roll = skill(&controller, "roll");
         controller.tick(&standing(), &Command { skill: Some(roll), ..Command::default() }, DT);
         assert_eq!(controller.report().skill_started, Some(roll));
-        assert_eq!(controller.report().blend, Blend::single(6));
+        assert_eq!(controller.report().blend, Blend::single(p(6)));
         let mut seconds = DT;
         while controller.report().skill_ended.is_none() {
             controller.tick(&standing(), &Command::default(), DT);
@@ -74,7 +73,7 @@ fn a_recognised_skill_returns_and_an_unrecognised_one_runs_to_its_limit() {
         }
         assert_eq!(controller.report().skill_ended, Some((roll, end)));
         assert!(seconds > least && (end == SkillEnd::TimeLimit || seconds < 1.0), "{seconds}");
-        assert_eq!(controller.report().position, GraphPosition::node(1));
+        assert_eq!(controller.report().position, GraphPosition::node(n(1)));
     }
 }
 
@@ -85,7 +84,7 @@ fn a_skill_waits_until_the_graph_position_allows_it() {
     controller.tick(&standing(), &Command { skill: Some(roll), ..Command::default() }, DT);
     assert_eq!((controller.report().skill, controller.report().pending_skill), (None, Some(roll)));
     let ticks = (0..60).find(|_| {
-        controller.tick(&standing(), &Command { goal: Goal::Node(0), ..Command::default() }, DT);
+        controller.tick(&standing(), &Command { goal: Goal::Node(n(0)), ..Command::default() }, DT);
         controller.report().skill.is_some()
     });
     assert!(ticks.is_some_and(|t| (4..=16).contains(&t)), "{ticks:?}");
@@ -117,7 +116,7 @@ fn low_is_no_fall_where_the_policy_is_low_and_none_without_recovery() {
         crawling.tick(&lying, &Command::default(), DT);
     }
     assert!(!crawling.report().fallen && crawling.report().skill.is_none());
-    let config = ControllerConfig { recover: false, ..ControllerConfig::default() };
+    let config = ControllerConfig { auto_recover: false, ..ControllerConfig::default() };
     let mut walking = Controller::with_config(Arc::new(common::pack(0.0)), config);
     for _ in 0..60 {
         walking.tick(&lying, &Command::default(), DT);
@@ -126,16 +125,16 @@ fn low_is_no_fall_where_the_policy_is_low_and_none_without_recovery() {
 }
 
 #[test]
-fn who_leaves_a_crawl_rises_before_the_place_is_left() {
+fn leaving_a_crawl_requires_standing_first() {
     let at = |pelvis: f32| {
         let mut state = standing();
         state.bodies[0].position.z = pelvis;
         state
     };
-    let crouching = Command { goal: Goal::Node(1), ..Command::default() };
+    let crouching = Command { goal: Goal::Node(n(1)), ..Command::default() };
     let pack = common::pack(0.0);
     let start = pack.graph().node_named("crawl").unwrap();
-    let config = ControllerConfig { rise: false, start, ..ControllerConfig::default() };
+    let config = ControllerConfig { assist_rise: false, start, ..ControllerConfig::default() };
     let mut controller = Controller::with_config(Arc::new(pack), config);
     let ticks = |controller: &mut Controller, pelvis: f32, count: u32| {
         for _ in 0..count {
@@ -143,27 +142,27 @@ fn who_leaves_a_crawl_rises_before_the_place_is_left() {
         }
         (controller.report().position.as_node(), controller.report().fallen, controller.report().skill)
     };
-    // However long the way back is, the place does not come out of where low is right.
+    // However long the way is, the position stays on the low edge.
     let crawl = controller.report().position.as_node();
     let (node, fallen, _) = ticks(&mut controller, 0.3, 60);
-    assert!(node != Some(1) && !fallen, "{:?}", controller.report().position);
+    assert!(node != Some(n(1)) && !fallen, "{:?}", controller.report().position);
     let held = controller.report().position;
     assert!(Some(held.from) == crawl || Some(held.to) == crawl, "{held:?}");
-    // Up it goes on; who never rises gets up as after a fall.
+    // Once up it goes on; otherwise it is a fall.
     let mut risen = controller.clone();
-    assert_eq!(ticks(&mut risen, 0.9, 120).0, Some(1));
+    assert_eq!(ticks(&mut risen, 0.9, 120).0, Some(n(1)));
     assert!(ticks(&mut controller, 0.3, 90).2.is_some());
 }
 
 #[test]
-fn who_is_late_to_rise_is_raised_by_the_recovery_skill_without_a_fall() {
+fn the_recovery_skill_takes_over_when_standing_up_is_late() {
     let mut low = standing();
     low.bodies[0].position.z = 0.3;
-    let crouching = Command { goal: Goal::Node(1), ..Command::default() };
+    let crouching = Command { goal: Goal::Node(n(1)), ..Command::default() };
     for recover in [false, true] {
         let pack = common::pack(0.0);
         let (start, recovery) = (pack.graph().node_named("crawl").unwrap(), pack.recovery());
-        let config = ControllerConfig { recover, start, ..ControllerConfig::default() };
+        let config = ControllerConfig { auto_recover: recover, start, ..ControllerConfig::default() };
         let mut controller = Controller::with_config(Arc::new(pack), config);
         let mut held = 0;
         while controller.report().skill.is_none() {
@@ -184,10 +183,10 @@ fn a_state_that_is_not_finite_gives_a_safe_action_and_a_flag() {
     controller.tick(&standing(), &Command::default(), DT);
     let mut bad = standing();
     bad.joint_velocities[4] = f32::INFINITY;
-    assert_eq!(controller.tick(&bad, &Command::default(), DT).0, [0.0; 28]);
-    assert!(controller.report().non_finite);
+    assert_eq!(controller.tick(&bad, &Command::default(), DT)[..], [0.0; 28]);
+    assert_eq!(controller.report().fault, Some(StateFault::NonFinite));
     controller.tick(&standing(), &Command::default(), DT);
-    assert!(!controller.report().non_finite);
+    assert_eq!(controller.report().fault, None);
 }
 
 #[test]
@@ -197,10 +196,10 @@ fn manual_blends_replace_the_graph_and_bad_ones_do_not() {
         controller.tick(&standing(), &Command { blend: Some(blend), ..Command::default() }, DT);
         controller.report().blend
     };
-    let manual = Blend::between_per_layer(0, 3, [0.2, 0.5, 0.9, 0.0]);
+    let manual = Blend::between_per_layer(p(0), p(3), [0.2, 0.5, 0.9, 0.0]);
     assert_eq!(tick(manual), manual);
-    let walk = Blend::single(1);
-    for bad in [Blend::single(99), Blend::between(0, 1, f32::NAN), Blend::default()] {
+    let walk = Blend::single(p(1));
+    for bad in [Blend::single(p(99)), Blend::between(p(0), p(1), f32::NAN), Blend::default()] {
         assert_eq!(tick(bad), walk);
     }
 }
@@ -212,26 +211,28 @@ fn a_pad_becomes_a_command() {
     let state = standing();
     let mut map = |pad: GamepadState, camera| mapper.map(&pad, camera, &state);
     let neutral = map(GamepadState::default(), Heading::FORWARD);
-    assert_eq!((neutral.target, neutral.goal), (None, Goal::Path { path: 0, coordinate: 0.0 }));
+    assert_eq!((neutral.target, neutral.goal), (None, along(0, 0.0)));
 
     let pad = GamepadState { left_stick: [0.0, 1.0], right_trigger: 0.5, ..GamepadState::default() };
     let command = map(pad, Heading::from_angle(std::f32::consts::FRAC_PI_2));
     assert!((command.target.unwrap() - Vec2::new(0.0, 5.0)).length() < 1e-5, "up is where the camera looks");
-    assert_eq!(command.goal, Goal::Path { path: 0, coordinate: 2.0 });
+    assert_eq!(command.goal, along(0, 2.0));
 
     let right = map(GamepadState { left_stick: [0.5, 0.0], ..pad }, Heading::FORWARD).target.unwrap();
     assert!((right - Vec2::new(0.0, -2.5)).length() < 1e-5, "right of x is minus y");
 
     let both = map(GamepadState { left_trigger: 0.75, ..pad }, Heading::FORWARD);
-    assert_eq!(both.goal, Goal::Path { path: 1, coordinate: 2.5 });
+    assert_eq!(both.goal, along(1, 2.5));
 
-    let named = Bindings { style_path: "stance".into(), style_button: Button::West, ..Bindings::default() };
+    let held = Control::Button(Button::West);
+    let style = PathBinding { path: "stance".into(), control: held, first: 1.0, needs_stick: true };
+    let named = Bindings { paths: vec![style], ..Bindings::default() };
     let mut styled = CommandMapper::new(&pack, &named);
     let mut goal = |pad: GamepadState| styled.map(&pad, Heading::FORWARD, &state).goal;
     let west = GamepadState { buttons: Buttons::NONE.with(Button::West), ..pad };
-    assert_eq!(goal(west), Goal::Path { path: 1, coordinate: 3.0 });
-    assert_eq!(goal(GamepadState { left_stick: [0.0; 2], ..west }), Goal::Path { path: 0, coordinate: 0.0 });
-    assert_eq!(goal(pad), Goal::Path { path: 0, coordinate: 2.0 });
+    assert_eq!(goal(west), along(1, 3.0));
+    assert_eq!(goal(GamepadState { left_stick: [0.0; 2], ..west }), along(0, 0.0));
+    assert_eq!(goal(pad), along(0, 2.0));
 
     let roll = pack.skill_named("roll");
     let held = GamepadState { buttons: Buttons::NONE.with(Button::East), ..pad };
@@ -262,18 +263,18 @@ proptest! {
             state.ground_height = numbers[index % 32];
             let goal = match kind {
                 0 => Goal::Stay,
-                1 => Goal::Node(index),
-                _ => Goal::Path { path: index % 3, coordinate: number },
+                1 => Goal::Node(n(index)),
+                _ => along(index % 3, number),
             };
             let command = Command {
                 target: Some(Vec2::new(number, numbers[index % 32])),
                 goal,
-                skill: Some(index % 4),
-                blend: (kind == 3).then(|| Blend::between(index % 9, 1, number)),
-                mode: BlendMode::ALL[mode % 3],
+                skill: Some(SkillId::new(index % 4)),
+                blend: (kind == 3).then(|| Blend::between(p(index % 9), p(1), number)),
             };
+            controller.set_blend_mode(BlendMode::ALL[mode % 3]);
             let targets = controller.tick(&state, &command, number);
-            prop_assert!(targets.0.iter().all(|t| t.is_finite()), "{:?}", controller.report());
+            prop_assert!(targets.iter().all(|t| t.is_finite()), "{:?}", controller.report());
         }
     }
 }

@@ -2,18 +2,19 @@
 
 mod common;
 
-use common::pack;
-use policy_core::{CharacterPack, EdgeEntry, GraphPosition, PolicyGraph};
+use common::{n, pack};
+use policy_core::format::EdgeEntry;
+use policy_core::{CharacterPack, GraphPosition, NodeId, PolicyGraph};
 use proptest::prelude::*;
 
 const DT: f32 = 1.0 / 30.0;
 
-fn node(pack: &CharacterPack, name: &str) -> usize {
+fn node(pack: &CharacterPack, name: &str) -> NodeId {
     pack.graph().node_named(name).unwrap()
 }
 
 /// Cheapest way by trying all simple ways, the plain definition.
-fn cheapest(graph: &PolicyGraph, from: usize, to: usize, seen: &mut Vec<usize>) -> f32 {
+fn cheapest(graph: &PolicyGraph, from: NodeId, to: NodeId, seen: &mut Vec<NodeId>) -> f32 {
     if from == to {
         return 0.0;
     }
@@ -33,14 +34,22 @@ fn cheapest(graph: &PolicyGraph, from: usize, to: usize, seen: &mut Vec<usize>) 
 #[test]
 fn search_finds_the_cheapest_way() {
     let mut manifest = common::manifest();
-    manifest.edges.push(EdgeEntry { nodes: ["idle".into(), "crouch".into()], seconds: 1.0 });
-    manifest.edges.push(EdgeEntry { nodes: ["run".into(), "idle".into()], seconds: 1.0 });
+    manifest.edges.push(EdgeEntry {
+        nodes: ["idle".into(), "crouch".into()],
+        seconds: 1.0,
+        seconds_back: None,
+    });
+    manifest.edges.push(EdgeEntry { nodes: ["run".into(), "idle".into()], seconds: 1.0, seconds_back: None });
     let pack = CharacterPack::from_parts(manifest, common::tensors(0.0)).unwrap();
     let graph = pack.graph();
     for a in 0..graph.nodes().len() {
         for b in 0..graph.nodes().len() {
+            let [a, b] = [a, b].map(n);
             let (found, expected) = (graph.routes().cost(a, b), cheapest(graph, a, b, &mut Vec::new()));
-            assert!(found == expected || (found - expected).abs() < 1e-3, "{a} to {b}: {found}, {expected}");
+            assert!(
+                found == expected || (found - expected).abs() < 1e-3,
+                "{a:?} to {b:?}: {found}, {expected}"
+            );
             let route = graph.routes().route(a, b);
             assert_eq!(route.is_empty(), expected.is_infinite());
             let length: f32 =
@@ -48,7 +57,7 @@ fn search_finds_the_cheapest_way() {
             assert!(route.is_empty() || (length - expected).abs() < 1e-3);
         }
     }
-    assert!(graph.routes().route(0, node(&pack, "roll")).is_empty(), "roll hangs on no edge");
+    assert!(graph.routes().route(n(0), node(&pack, "roll")).is_empty(), "roll hangs on no edge");
 }
 
 #[test]
@@ -67,25 +76,40 @@ fn the_way_from_run_to_crawl_leads_through_walk_in_the_time_of_its_edges() {
             nodes.push(position.nearest_node());
         }
     }
-    let names: Vec<&str> = nodes.iter().map(|&n| graph.nodes()[n].name.as_str()).collect();
+    let names: Vec<&str> = nodes.iter().map(|&n| graph.node(n).name.as_str()).collect();
     assert_eq!(names, ["run", "jog", "walk", "crouch", "crawl"]);
     assert!((seconds - 2.0).abs() < 1.5 * DT, "four edges of half a second, took {seconds}");
 }
 
 #[test]
+fn an_edge_may_take_longer_one_way_than_the_other() {
+    let mut manifest = common::manifest();
+    manifest.edges[0].seconds_back = Some(0.25);
+    let pack = CharacterPack::from_parts(manifest, common::tensors(0.0)).unwrap();
+    let seconds = |from: usize, to: usize| {
+        let mut position = GraphPosition::node(n(from));
+        (1..).find(|_| {
+            pack.graph().travel(&mut position, GraphPosition::node(n(to)), 0.01);
+            position.as_node() == Some(n(to))
+        })
+    };
+    assert!((49..=51).contains(&seconds(0, 1).unwrap()) && (24..=26).contains(&seconds(1, 0).unwrap()));
+}
+
+#[test]
 fn no_way_means_no_move() {
     let pack = pack(0.0);
-    let mut position = GraphPosition { from: 0, to: 1, t: 0.4 };
+    let mut position = GraphPosition { from: n(0), to: n(1), t: 0.4 };
     pack.graph().travel(&mut position, GraphPosition::node(node(&pack, "roll")), 1.0);
-    assert_eq!(position, GraphPosition { from: 0, to: 1, t: 0.4 });
+    assert_eq!(position, GraphPosition { from: n(0), to: n(1), t: 0.4 });
     for dt in [0.0, -1.0, f32::NAN] {
-        pack.graph().travel(&mut position, GraphPosition::node(1), dt);
+        pack.graph().travel(&mut position, GraphPosition::node(n(1)), dt);
         assert_eq!(position.t, 0.4);
     }
 }
 
 #[test]
-fn coordinates_and_places_are_each_others_inverse() {
+fn coordinates_and_positions_are_each_others_inverse() {
     let pack = pack(0.0);
     for path in pack.graph().paths() {
         for i in 0..=30 {
@@ -97,8 +121,8 @@ fn coordinates_and_places_are_each_others_inverse() {
         assert_eq!(path.coordinate(path.position(9.0)), Some(3.0));
     }
     let speed = &pack.graph().paths()[0];
-    assert_eq!(speed.coordinate(GraphPosition { from: 4, to: 5, t: 0.5 }), None);
-    assert_eq!(speed.coordinate(GraphPosition { from: 2, to: 1, t: 0.25 }), Some(1.75));
+    assert_eq!(speed.coordinate(GraphPosition { from: n(4), to: n(5), t: 0.5 }), None);
+    assert_eq!(speed.coordinate(GraphPosition { from: n(2), to: n(1), t: 0.25 }), Some(1.75));
 }
 
 proptest! {

@@ -6,9 +6,10 @@ use std::alloc::{GlobalAlloc, Layout, System};
 use std::cell::Cell;
 use std::sync::Arc;
 
+use common::{n, p, standing};
 use policy_core::{
-    Arithmetic, BatchScratch, Bindings, Blend, BlendMode, Button, Buttons, CharacterState, Command,
-    CommandMapper, Controller, GamepadState, Goal, Heading, evaluate_batch_into,
+    Arithmetic, BatchScratch, Bindings, Blend, BlendMode, Button, Buttons, Command, CommandMapper,
+    Controller, ControllerConfig, ControllerState, GamepadState, Goal, Heading, evaluate_batch_into,
 };
 
 struct Counting;
@@ -47,10 +48,16 @@ fn the_counter_counts() {
 #[test]
 fn ticks_of_every_kind_do_not_allocate() {
     let pack = Arc::new(common::pack(2.0));
-    let mut controller = Controller::new(pack.clone());
+    let config = ControllerConfig {
+        handover_secs: 0.1,
+        turn_assist: Some(policy_core::TurnAssist::default()),
+        ..ControllerConfig::default()
+    };
+    let mut controller = Controller::with_config(pack.clone(), config);
+    let mut saved = ControllerState::new(&pack);
+    let mut bytes = vec![0; saved.byte_len()];
     let mut mapper = CommandMapper::new(&pack, &Bindings::default());
-    let mut state = CharacterState::default();
-    state.bodies[0].position.z = 0.9;
+    let mut state = standing();
     let mut pad = GamepadState { left_stick: [0.3, 0.9], ..GamepadState::default() };
     let count = allocations(|| {
         for tick in 0..600 {
@@ -59,14 +66,18 @@ fn ticks_of_every_kind_do_not_allocate() {
             pad.buttons = if tick % 120 == 60 { Buttons::NONE.with(Button::East) } else { Buttons::NONE };
             state.bodies[0].position.z = if tick % 200 > 180 { 0.2 } else { 0.9 };
             let mut command = mapper.map(&pad, Heading::FORWARD, &state);
-            command.mode = BlendMode::ALL[tick % 3];
+            controller.set_blend_mode(BlendMode::ALL[tick % 3]);
             if tick > 500 {
-                command.goal = Goal::Node(tick % 7);
+                command.goal = Goal::Node(n(tick % 7));
             }
             if tick % 50 > 40 {
-                command.blend = Some(Blend::between_per_layer(0, 3, [0.2, 0.4, 0.6, 0.0]));
+                command.blend = Some(Blend::between_per_layer(p(0), p(3), [0.2, 0.4, 0.6, 0.0]));
             }
             controller.tick(&state, &command, 1.0 / 30.0);
+            controller.save_into(&mut saved);
+            saved.write_bytes(&mut bytes);
+            saved.read_bytes(&pack, &bytes).unwrap();
+            controller.restore(&saved).unwrap();
         }
         state.bodies[3].rotation.x = f32::NAN;
         controller.tick(&state, &Command::default(), 1.0 / 30.0);
@@ -77,7 +88,7 @@ fn ticks_of_every_kind_do_not_allocate() {
 #[test]
 fn batches_do_not_allocate() {
     let pack = common::pack(0.0);
-    let blends: Vec<Blend> = (0..100).map(|i| Blend::between(i % 5, i % 5 + 1, 0.5)).collect();
+    let blends: Vec<Blend> = (0..100).map(|i| Blend::between(p(i % 5), p(i % 5 + 1), 0.5)).collect();
     let (inputs, mut out) = (vec![0.1; 100 * 225], vec![0.0; 100 * 28]);
     let mut scratch = BatchScratch::for_mlp(&pack.policies()[0], 100);
     let count = allocations(|| {

@@ -3,7 +3,9 @@
 mod common;
 
 use common::{manifest, pack, tensors};
-use policy_core::{CharacterPack, Manifest, PackError, PackTensors};
+use policy_core::format::Manifest;
+use policy_core::training::PackTensors;
+use policy_core::{CharacterPack, PackError};
 use proptest::prelude::*;
 
 fn refused(change: impl FnOnce(&mut Manifest, &mut PackTensors)) -> String {
@@ -17,7 +19,9 @@ fn a_pack_survives_its_bytes() {
     let first = pack(1.0);
     let bytes = first.to_bytes();
     let second = CharacterPack::from_bytes(&bytes).unwrap();
-    assert_eq!(first.manifest(), second.manifest());
+    let unsigned = |p: &CharacterPack| Manifest { checksum: None, ..p.manifest().clone() };
+    assert_eq!(unsigned(&first), unsigned(&second));
+    assert!(second.is_verified() && !first.is_verified());
     assert_eq!(first.tensors(), second.tensors());
     assert_eq!(bytes, second.to_bytes(), "the same pack gives the same bytes");
 }
@@ -27,9 +31,15 @@ fn messages_name_field_expected_and_found() {
     let says = |message: String, parts: &[&str]| {
         assert!(parts.iter().all(|p| message.contains(p)), "{message}");
     };
-    says(refused(|m, _| m.version = 2), &["version", "1", "2"]);
+    says(refused(|m, _| m.version = 3), &["version", "2", "3"]);
     says(refused(|m, _| m.format = "x".into()), &["format", "policy-space character pack", "x"]);
-    says(refused(|m, _| m.bodies.swap(0, 1)), &["bodies", "pelvis torso", "torso pelvis"]);
+    says(refused(|m, _| m.skeleton.bodies.swap(0, 1)), &["skeleton", "parent of body \"torso\""]);
+    says(refused(|m, _| m.skeleton.joints[2].body = "tail".into()), &["body", "joints", "tail"]);
+    says(refused(|m, _| m.skeleton.roles.head = Some("tail".into())), &["body", "roles", "tail"]);
+    says(refused(|m, _| drop(m.skeleton.joints.pop())), &["124 means", "discriminator", "125"]);
+    says(refused(|m, _| m.policies = vec![m.policies[0].clone(); 65]), &["64 policies", "65"]);
+    says(refused(|m, _| m.skills[0].entry = vec!["roll".into()]), &["way", "skill \"roll\"", "idle"]);
+    says(refused(|m, _| m.paths[0].name = "x".repeat(65)), &["path name", "64", "65"]);
     says(refused(|m, _| m.policies[1].name = "idle".into()), &["policy name", "unique", "idle"]);
     says(refused(|m, _| m.skills[1].name = "roll".into()), &["skill name", "roll"]);
     says(refused(|m, _| m.paths[0].nodes[2] = "gallop".into()), &["path \"speed\"", "gallop"]);
@@ -39,7 +49,7 @@ fn messages_name_field_expected_and_found() {
     says(refused(|m, _| m.edges[0].seconds = f32::NAN), &["edge 0"]);
     says(refused(|m, _| m.edges[0].nodes[1] = "idle".into()), &["edge 0", "different"]);
     says(refused(|m, _| m.skills[0].end.threshold = 1.5), &["threshold", "skill \"roll\"", "0 to 1", "1.5"]);
-    says(refused(|m, _| m.skills[0].end.ticks = 0), &["ticks", "1 to"]);
+    says(refused(|m, _| m.skills[0].end.hold_seconds = 0.0), &["hold_seconds", "above 0"]);
     says(refused(|m, _| m.skills[0].discriminator = Some("jog".into())), &["discriminator", "jog"]);
     says(refused(|m, _| m.skills[0].returns_to = "jgo".into()), &["policy", "jgo"]);
     says(refused(|m, _| m.recovery = Some("fly".into())), &["recovery", "fly"]);
@@ -54,9 +64,14 @@ fn messages_name_field_expected_and_found() {
     says(refused(|m, t| (m.policies.clear(), t.policies.clear()).1), &["1 to 64", "0"]);
 }
 
-/// Bytes of a pack with its header's text changed; the header's length stays as it was.
+/// Bytes of a pack without a checksum and with its header's text changed.
 fn with_header(change: impl Fn(String) -> String) -> Vec<u8> {
     let bytes = pack(0.0).to_bytes();
+    let change = |header: String| {
+        let from = header.find("\\\"checksum\\\"").expect("written with a checksum");
+        let to = from + header[from..].find(',').expect("another field follows") + 1;
+        change(format!("{}{}", &header[..from], &header[to..]))
+    };
     let length = u64::from_le_bytes(bytes[..8].try_into().unwrap()) as usize;
     let header = change(String::from_utf8(bytes[8..8 + length].to_vec()).unwrap());
     let mut out = (header.len() as u64).to_le_bytes().to_vec();
@@ -88,7 +103,8 @@ fn bad_files_are_refused() {
     assert!(message(&shape).contains("[225, 128]"));
     let same = with_header(|h| h.replace("policy.run.layer1.bias", "policy.jog.layer1.bias"));
     assert!(CharacterPack::from_bytes(&same).is_err(), "a tensor named twice");
-    let mut nan = bytes.clone();
+    let mut nan = with_header(|h| h);
+    assert!(!CharacterPack::from_bytes(&nan).unwrap().is_verified(), "a pack without a checksum loads");
     let at = nan.len() - 4;
     nan[at..].copy_from_slice(&f32::NAN.to_le_bytes());
     let found = message(&nan);
@@ -113,14 +129,59 @@ proptest! {
     #![proptest_config(ProptestConfig::with_cases(300))]
 
     #[test]
-    fn flipped_bits_never_panic(at in 0.0f64..1.0, bit in 0u8..8, in_header in any::<bool>()) {
+    fn a_flipped_bit_is_noticed(at in 0.0f64..1.0, bit in 0u8..8, in_header in any::<bool>()) {
         let mut bytes = pack(0.0).to_bytes();
         let header = u64::from_le_bytes(bytes[..8].try_into().unwrap()) as usize + 8;
         let range = if in_header { header } else { bytes.len() };
         bytes[(at * range as f64) as usize] ^= 1 << bit;
+        prop_assert!(CharacterPack::from_bytes(&bytes).is_err());
+    }
+
+    #[test]
+    fn a_flipped_bit_without_a_checksum_never_panics(at in 0.0f64..1.0, bit in 0u8..8) {
+        let mut bytes = with_header(|h| h);
+        let header = u64::from_le_bytes(bytes[..8].try_into().unwrap()) as usize + 8;
+        bytes[(at * header as f64) as usize] ^= 1 << bit;
         if let Ok(pack) = CharacterPack::from_bytes(&bytes) {
             let finite = |m: &policy_core::Mlp| m.layers().iter().all(|l| l.weight().all(f32::is_finite));
             prop_assert!(pack.policies().iter().all(finite), "what loads is sound");
         }
     }
+}
+
+/// The reference pack of the golden tests stays one of version 1.
+#[test]
+fn a_pack_of_version_1_loads_and_is_written_as_version_2() {
+    let path = concat!(env!("CARGO_MANIFEST_DIR"), "/../../tests/golden/reference.pack.safetensors");
+    let old = CharacterPack::from_bytes(&std::fs::read(path).unwrap()).unwrap();
+    assert_eq!((old.skeleton().body_count(), old.skeleton().joint_count()), (15, 28));
+    assert!(old.mjcf().is_none() && old.actuation().is_none() && !old.is_verified());
+    let new = CharacterPack::from_bytes(&old.to_bytes()).unwrap();
+    assert!(new.is_verified());
+    assert_eq!(new.tensors(), old.tensors());
+    assert_eq!(new.skills(), old.skills());
+}
+
+#[test]
+fn body_text_motors_credits_and_mesh_survive() {
+    use policy_core::format::CreditEntry;
+    use policy_core::{ActuationContract, JointActuation};
+    let (mut manifest, mut tensors) = (manifest(), tensors(0.0));
+    manifest.mjcf = Some("<mujoco>\n  \"quoted\"\n</mujoco>".into());
+    let motor = JointActuation { gain: 300.0, damping: 30.0, force_limit: 200.0, armature: 0.02 };
+    manifest.actuation =
+        Some(ActuationContract { physics_hz: 120.0, mass_kg: 48.9, joints: vec![motor; 28] });
+    let credit = CreditEntry { work: "walk".into(), source: "somebody".into(), licence: "CC0".into() };
+    manifest.credits = vec![credit];
+    tensors.mesh = Some(vec![1, 2, 3]);
+    let pack = CharacterPack::from_parts(manifest.clone(), tensors.clone()).unwrap();
+    let read = CharacterPack::from_bytes(&pack.to_bytes()).unwrap();
+    assert_eq!((read.mjcf(), read.mesh()), (pack.mjcf(), Some(&[1u8, 2, 3][..])));
+    assert_eq!((read.actuation(), read.credits()), (pack.actuation(), pack.credits()));
+    manifest.actuation.as_mut().unwrap().joints[3].gain = f32::NAN;
+    let error = CharacterPack::from_parts(manifest.clone(), tensors.clone()).unwrap_err().to_string();
+    assert!(error.contains("gain") && error.contains("actuation"), "{error}");
+    manifest.actuation.as_mut().unwrap().joints.pop();
+    let error = CharacterPack::from_parts(manifest, tensors).unwrap_err().to_string();
+    assert!(error.contains("28 actuation.joints") && error.contains("27"), "{error}");
 }

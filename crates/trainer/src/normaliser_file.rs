@@ -5,17 +5,22 @@ use std::path::Path;
 use policy_core::{FRAME_LEN, Normaliser, OBSERVATION_LEN};
 use safetensors::tensor::{Dtype, SafeTensors, TensorView};
 
-use crate::checkpoint::{CheckpointError, bytes, floats, write_atomically};
+use crate::checkpoint::{CheckpointError, bytes, floats};
 use crate::env::Normalisers;
+use crate::storage::{read_bounded, write_atomically};
 
 const NAMES: [(&str, usize); 2] = [("observation", OBSERVATION_LEN), ("discriminator", FRAME_LEN)];
+
+/// Largest file, bytes.
+const MOST_BYTES: u64 = 1 << 20;
 
 /// Reads means and deviations of observations and discriminator frames.
 ///
 /// # Errors
 /// When the file can't be read or doesn't hold them.
 pub fn load(path: &Path) -> Result<Normalisers, CheckpointError> {
-    let data = std::fs::read(path).map_err(|source| CheckpointError::Io { path: path.to_owned(), source })?;
+    let data = read_bounded(path, MOST_BYTES)
+        .map_err(|source| CheckpointError::Io { path: path.to_owned(), source })?;
     let wrong =
         |expected: String, found: String| CheckpointError::Content { path: path.to_owned(), expected, found };
     let tensors =

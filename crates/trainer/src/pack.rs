@@ -13,10 +13,9 @@ mod plan;
 
 pub use plan::{PackPlan, PlannedPolicy};
 
-use crate::checkpoint::{Checkpoint, CheckpointError};
+use crate::checkpoint::{ACTOR, Checkpoint, CheckpointError, DISCRIMINATOR, EMA};
 use crate::env::Normalisers;
 use crate::nn::Network;
-use crate::training::AVERAGE;
 
 /// Why a pack can't be bound.
 #[derive(Debug, thiserror::Error)]
@@ -58,7 +57,7 @@ pub enum BindError {
 
 /// Where a skill comes from and its networks.
 #[derive(Clone, Debug)]
-pub struct Ingredient {
+pub struct TrainedSkill {
     /// Name of the skill.
     pub skill: String,
     /// Its policy.
@@ -69,7 +68,7 @@ pub struct Ingredient {
     pub origin: String,
 }
 
-impl Ingredient {
+impl TrainedSkill {
     /// The skill out of a checkpoint of its own run, or of one that trained it together with others; `path` is named in
     /// errors.
     ///
@@ -82,12 +81,12 @@ impl Ingredient {
         let recipe = if together { "joint recipe" } else { "recipe" };
         Ok(Self {
             skill: skill.into(),
-            // The running mean where there is one: old checkpoints have the policy alone.
-            actor: match loaded.networks.get(&role(AVERAGE)) {
-                Some(average) => average.network.clone(),
-                None => loaded.network(&role("actor"), path)?.network.clone(),
+            // The moving average where there is one: old checkpoints have the policy alone.
+            actor: match loaded.networks.get(&role(EMA)) {
+                Some(ema) => ema.network.clone(),
+                None => loaded.network(&role(ACTOR), path)?.network.clone(),
             },
-            discriminator: loaded.network(&role("discriminator"), path)?.network.clone(),
+            discriminator: loaded.network(&role(DISCRIMINATOR), path)?.network.clone(),
             origin: format!(
                 "{recipe} {skill}, seed {}, {} samples, {:.0} s",
                 progress.seed, progress.samples, progress.secs
@@ -106,27 +105,27 @@ impl Ingredient {
     /// True when a checkpoint is of a run that trained this skill together with others.
     #[must_use]
     pub fn is_in(skill: &str, checkpoint: &Checkpoint) -> bool {
-        checkpoint.networks.contains_key(&format!("{skill}.actor"))
+        checkpoint.networks.contains_key(&format!("{skill}.{ACTOR}"))
     }
 }
 
 /// Binds the skills of `plan` into a pack.
 ///
 /// # Errors
-/// When a skill of the plan is no ingredient, or policy-core refuses the parts.
+/// When a skill of the plan is not trained, or policy-core refuses the parts.
 pub fn bind(
     plan: &PackPlan,
-    ingredients: &[Ingredient],
+    trained: &[TrainedSkill],
     normalisers: &Normalisers,
     model: &Model,
 ) -> Result<CharacterPack, BindError> {
     let (low, high) = model.joint_limits();
     let scaling = ActionScaling::from_joint_limits(low, high).map_err(PackError::from)?;
-    let mut judges: Vec<&str> = plan.skills.iter().filter_map(|s| s.discriminator.as_deref()).collect();
-    judges.sort_unstable();
-    judges.dedup();
+    let mut scorers: Vec<&str> = plan.skills.iter().filter_map(|s| s.discriminator.as_deref()).collect();
+    scorers.sort_unstable();
+    scorers.dedup();
     let find = |name: &str| {
-        ingredients.iter().find(|i| i.skill == name).ok_or_else(|| CheckpointError::Content {
+        trained.iter().find(|i| i.skill == name).ok_or_else(|| CheckpointError::Content {
             path: PathBuf::from(name),
             expected: "a trained skill of this name".into(),
             found: "none".into(),
@@ -135,19 +134,19 @@ pub fn bind(
     let mut policies = Vec::new();
     let mut entries = Vec::new();
     for planned in &plan.policies {
-        let ingredient = find(&planned.name)?;
-        policies.push(mlp(&ingredient.actor, &planned.name, "policy")?);
+        let skill = find(&planned.name)?;
+        policies.push(mlp(&skill.actor, &planned.name, "policy")?);
         entries.push(PolicyEntry {
             name: planned.name.clone(),
-            layers: ingredient.actor.sizes().to_vec(),
+            layers: skill.actor.sizes().to_vec(),
             fall_height: planned.fall_height,
             speed_mps: planned.speed_mps,
-            origin: ingredient.origin.clone(),
+            origin: skill.origin.clone(),
         });
     }
     let mut discriminators = Vec::new();
     let mut judge_entries = Vec::new();
-    for name in judges {
+    for name in scorers {
         let network = &find(name)?.discriminator;
         discriminators.push(mlp(network, name, "discriminator")?);
         judge_entries.push(DiscriminatorEntry { name: name.into(), layers: network.sizes().to_vec() });

@@ -1,14 +1,38 @@
 //! Made-up policies and a made-up pack, so that no test needs trained ones.
 #![allow(dead_code, reason = "each test file uses its part")]
 
-use policy_core::{
-    BODY_NAMES, CharacterPack, DISCRIMINATOR_INPUT_LEN, DISCRIMINATOR_LAYOUT, DOF_COUNT, DiscriminatorEntry,
-    EdgeEntry, EndCondition, FRAME_LEN, JOINT_NAMES, Layer, Manifest, Mlp, Normaliser, OBSERVATION_LAYOUT,
-    OBSERVATION_LEN, PACK_FORMAT, PACK_VERSION, POLICY_INPUT_LEN, PackTensors, PathEntry, PolicyEntry,
-    SkillEntry,
+use policy_core::format::{
+    DISCRIMINATOR_LAYOUT, DiscriminatorEntry, EdgeEntry, EndEntry, Manifest, OBSERVATION_LAYOUT, PACK_FORMAT,
+    PACK_VERSION, PathEntry, PolicyEntry, SkeletonEntry, SkillEntry, Storage,
 };
+use policy_core::training::{Layer, Normaliser, PackTensors};
+use policy_core::{CharacterPack, CharacterState, Mlp, NodeId, PolicyId, Skeleton};
 
-pub const POLICY_SIZES: [usize; 4] = [POLICY_INPUT_LEN, 128, 32, DOF_COUNT];
+/// Numbers of the humanoid's layouts.
+pub const INPUT: usize = 225;
+pub const JOINTS: usize = 28;
+const DISCRIMINATOR_INPUT: usize = 625;
+
+/// The policy of an index.
+pub fn p(index: usize) -> PolicyId {
+    PolicyId::new(index)
+}
+
+/// The node of an index.
+pub fn n(index: usize) -> NodeId {
+    NodeId::new(index)
+}
+
+/// A state of the humanoid that stands.
+pub fn standing() -> CharacterState {
+    let skeleton = Skeleton::humanoid();
+    let mut state = CharacterState::new(&skeleton);
+    state.bodies.iter_mut().for_each(|b| b.position.z = 0.9);
+    state.body_mut(skeleton.head().unwrap()).position.z = 1.4;
+    state
+}
+
+pub const POLICY_SIZES: [usize; 4] = [INPUT, 128, 32, JOINTS];
 
 /// A small generator that gives the same numbers everywhere.
 pub struct Noise(pub u32);
@@ -44,15 +68,15 @@ pub fn manifest() -> Manifest {
         speed_mps: None,
         origin: "made up".into(),
     };
-    let edge = |a: &str, b: &str| EdgeEntry { nodes: [a.into(), b.into()], seconds: 0.5 };
+    let edge = |a: &str, b: &str| EdgeEntry { nodes: [a.into(), b.into()], seconds: 0.5, seconds_back: None };
     let path = |name: &str, nodes: &[&str]| PathEntry {
         name: name.into(),
         nodes: nodes.iter().map(|n| (*n).into()).collect(),
     };
-    let end = EndCondition {
+    let end = EndEntry {
         threshold: 0.5,
         hysteresis: 0.1,
-        ticks: 5,
+        hold_seconds: 5.0 / 30.0,
         minimum_seconds: 0.2,
         limit_seconds: 3.0,
         minimum_height: 0.0,
@@ -72,10 +96,13 @@ pub fn manifest() -> Manifest {
         control_hz: 30.0,
         observation: OBSERVATION_LAYOUT.into(),
         discriminator: DISCRIMINATOR_LAYOUT.into(),
-        bodies: BODY_NAMES.map(Into::into).into(),
-        joints: JOINT_NAMES.map(Into::into).into(),
-        action_centre: vec![0.0; DOF_COUNT],
-        action_gain: vec![1.0; DOF_COUNT],
+        checksum: None,
+        skeleton: SkeletonEntry::from(&Skeleton::humanoid()),
+        actuation: None,
+        credits: Vec::new(),
+        mjcf: None,
+        action_centre: vec![0.0; JOINTS],
+        action_gain: vec![1.0; JOINTS],
         policies: NODES.map(policy).into(),
         edges: vec![
             edge("idle", "walk"),
@@ -90,7 +117,8 @@ pub fn manifest() -> Manifest {
         ],
         discriminators: vec![DiscriminatorEntry {
             name: "walk".into(),
-            layers: vec![DISCRIMINATOR_INPUT_LEN, 8, 1],
+            layers: vec![DISCRIMINATOR_INPUT, 8, 1],
+            storage: Storage::F32,
         }],
         skills: vec![skill("roll", &["walk", "jog"]), skill("get_up", &[])],
         recovery: Some("get_up".into()),
@@ -104,18 +132,15 @@ pub fn normaliser(len: usize) -> Normaliser {
 
 /// Tensors of [`manifest`]; the discriminator always gives `logit`.
 pub fn tensors(logit: f32) -> PackTensors {
-    let hidden = Layer::from_input_major(
-        DISCRIMINATOR_INPUT_LEN,
-        8,
-        &vec![0.0; DISCRIMINATOR_INPUT_LEN * 8],
-        &[0.0; 8],
-    );
+    let hidden =
+        Layer::from_input_major(DISCRIMINATOR_INPUT, 8, &vec![0.0; DISCRIMINATOR_INPUT * 8], &[0.0; 8]);
     let output = Layer::from_input_major(8, 1, &[0.0; 8], &[logit]);
     PackTensors {
         policies: (0..NODES.len() as u32).map(|i| mlp(&POLICY_SIZES, i + 1)).collect(),
         discriminators: vec![Mlp::from_layers(vec![hidden.unwrap(), output.unwrap()]).unwrap()],
-        observation_normaliser: normaliser(OBSERVATION_LEN),
-        discriminator_normaliser: normaliser(FRAME_LEN),
+        observation_normaliser: normaliser(INPUT - 2),
+        discriminator_normaliser: normaliser(125),
+        mesh: None,
     }
 }
 

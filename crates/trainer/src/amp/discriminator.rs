@@ -3,7 +3,7 @@
 use policy_core::DISCRIMINATOR_INPUT_LEN;
 use rayon::prelude::*;
 
-use super::config::DiscriminatorConfig;
+use super::config::{DiscriminatorConfig, GRADIENT_PENALTY, LEARNING_RATE, REPLAY_ROWS, WEIGHT_DECAY};
 use super::replay::Replay;
 use crate::env::Demonstrations;
 use crate::nn::{Adam, DiscriminatorLoss, DiscriminatorPass, Network, sigmoid};
@@ -21,7 +21,7 @@ pub fn style_reward(logit: f32) -> f32 {
 pub struct DiscriminatorReport {
     /// Cross-entropy of a row.
     pub cross_entropy: f32,
-    /// Share of rows judged rightly.
+    /// Share of rows told apart rightly.
     pub accuracy: f32,
     /// Squared gradient at a demonstration.
     pub squared_gradient: f32,
@@ -66,7 +66,7 @@ impl DiscriminatorLearner {
             sizes.push(1);
             Network::new(&sizes, 1.0, &mut rng)
         });
-        let rows = config.rows.div_ceil(LANES);
+        let rows = config.batch.div_ceil(LANES);
         let lane = Lane {
             pass: DiscriminatorPass::new(network.sizes(), rows),
             input: vec![0.0; 2 * rows * DISCRIMINATOR_INPUT_LEN],
@@ -75,7 +75,7 @@ impl DiscriminatorLearner {
         };
         Self {
             adam: Adam::new(network.parameters.len()),
-            replay: Replay::new(config.replay),
+            replay: Replay::new(config.replay_size),
             noise: NoiseTable::new(seed),
             lanes: vec![lane; LANES],
             batch: BatchEvaluator::new(network.sizes()),
@@ -104,7 +104,7 @@ impl DiscriminatorLearner {
             &inputs[at..at + DISCRIMINATOR_INPUT_LEN]
         };
         if !chosen.is_empty() {
-            for _ in 0..self.config.replay_rows {
+            for _ in 0..REPLAY_ROWS {
                 let row = row_of(chosen[self.rng.index(chosen.len())]);
                 self.replay.push(row.try_into().expect("a row of this length"));
             }
@@ -113,14 +113,14 @@ impl DiscriminatorLearner {
         if self.replay.is_empty() {
             return report;
         }
-        let per_lane = self.config.rows.div_ceil(LANES);
+        let per_lane = self.config.batch.div_ceil(LANES);
         let scale = 1.0 / (per_lane * LANES) as f32;
         for _ in 0..self.config.updates {
             for lane in &mut self.lanes {
                 let (real, simulated) = lane.input.split_at_mut(per_lane * DISCRIMINATOR_INPUT_LEN);
                 for row in real.chunks_exact_mut(DISCRIMINATOR_INPUT_LEN) {
                     demonstrations.sample_into(&mut self.rng, row.try_into().expect("a row of this length"));
-                    self.noise.add(&mut self.rng, self.config.noise, row);
+                    self.noise.add(&mut self.rng, self.config.noise_std, row);
                 }
                 for (i, row) in simulated.chunks_exact_mut(DISCRIMINATOR_INPUT_LEN).enumerate() {
                     let fresh = i % 2 == 0 && !chosen.is_empty();
@@ -130,13 +130,14 @@ impl DiscriminatorLearner {
                         self.replay.draw(&mut self.rng)
                     };
                     row.copy_from_slice(from);
-                    self.noise.add(&mut self.rng, self.config.noise, row);
+                    self.noise.add(&mut self.rng, self.config.noise_std, row);
                 }
             }
-            let (network, penalty) = (&self.network, self.config.gradient_penalty);
+            let network = &self.network;
             self.lanes.par_iter_mut().for_each(|lane| {
                 lane.gradient.fill(0.0);
-                lane.loss = lane.pass.accumulate(network, &lane.input, penalty, scale, &mut lane.gradient);
+                lane.loss =
+                    lane.pass.accumulate(network, &lane.input, GRADIENT_PENALTY, scale, &mut lane.gradient);
             });
             let (first, others) = self.lanes.split_first_mut().expect("there are lanes");
             for lane in others {
@@ -145,8 +146,8 @@ impl DiscriminatorLearner {
                 first.loss.squared_gradient += lane.loss.squared_gradient;
                 first.loss.right += lane.loss.right;
             }
-            let config = &self.config;
-            self.adam.step(&mut self.network.parameters, &first.gradient, config.rate, config.decay);
+            let parameters = &mut self.network.parameters;
+            self.adam.step(parameters, &first.gradient, LEARNING_RATE, WEIGHT_DECAY);
             let each = f64::from(scale) / self.config.updates as f64;
             report.cross_entropy += (first.loss.cross_entropy * 0.5 * each) as f32;
             report.accuracy += (first.loss.right * 0.5 * each) as f32;

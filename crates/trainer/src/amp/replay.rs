@@ -1,4 +1,4 @@
-//! Simulated rows of earlier iterations, so that a discriminator does not forget what it saw through.
+//! Simulated rows of earlier iterations, so that a discriminator does not forget what it once told apart.
 
 use policy_core::DISCRIMINATOR_INPUT_LEN;
 
@@ -35,7 +35,7 @@ impl Replay {
         self.rows.is_empty()
     }
 
-    /// Takes up a row in place of the oldest.
+    /// Stores a row in place of the oldest.
     pub fn push(&mut self, row: &[f32; DISCRIMINATOR_INPUT_LEN]) {
         if self.len() < self.capacity {
             self.rows.extend_from_slice(row);

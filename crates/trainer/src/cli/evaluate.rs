@@ -8,10 +8,10 @@ use anyhow::{Context, Result};
 use clap::Args;
 use physics_bridge::Model;
 use policy_core::{CharacterPack, CharacterState};
-use trainer::checkpoint::write_atomically;
 use trainer::clip::ClipFolder;
 use trainer::evaluate::{Effort, Progress, Section, clip_states, evaluate, plots, table};
 use trainer::recipe::Recipe;
+use trainer::storage::write_atomically;
 
 /// Arguments of the verb.
 #[derive(Args)]

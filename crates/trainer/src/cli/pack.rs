@@ -2,12 +2,15 @@
 
 use std::path::PathBuf;
 
-use anyhow::{Context, Result};
+use anyhow::{Context, Result, ensure};
 use clap::Args;
 use physics_bridge::Model;
-use trainer::checkpoint::{Checkpoint, write_atomically};
+use trainer::checkpoint::{Checkpoint, CheckpointError};
 use trainer::env::Normalisers;
-use trainer::pack::{Ingredient, PackPlan, bind};
+use trainer::pack::{PackPlan, PlannedPolicy, TrainedSkill, bind};
+use trainer::storage::write_atomically;
+
+use super::output::say;
 
 /// Arguments of the verb.
 #[derive(Args)]
@@ -30,31 +33,36 @@ pub(crate) struct Arguments {
 pub(crate) fn run(
     model: &Model,
     normalisers: &Normalisers,
-    checkpoint: &dyn Fn(&str) -> PathBuf,
+    newest: &dyn Fn(&str) -> Result<Option<(Checkpoint, PathBuf)>, CheckpointError>,
     a: &Arguments,
 ) -> Result<()> {
     let mut plan = PackPlan::load(&a.plan)?;
-    let joint = plan.joint.as_ref().map(|run| checkpoint(run)).filter(|path| path.exists());
-    let joint = joint.map(|path| Checkpoint::load(&path).map(|loaded| (loaded, path))).transpose()?;
-    let together = |skill: &str| joint.as_ref().filter(|(loaded, _)| Ingredient::is_in(skill, loaded));
-    if a.partial || !a.without.is_empty() {
-        let trained = |skill: &str| together(skill).is_some() || checkpoint(skill).exists();
-        let left_out = |skill: &str| a.without.iter().any(|w| w == skill) || (a.partial && !trained(skill));
-        plan = plan.only(|skill| !left_out(skill));
+    let joint = plan.joint.as_ref().map(|run| newest(run)).transpose()?.flatten();
+    let together = |skill: &str| joint.as_ref().filter(|(loaded, _)| TrainedSkill::is_in(skill, loaded));
+    let mut trained = Vec::new();
+    for PlannedPolicy { name, .. } in &plan.policies {
+        let own = match together(name) {
+            Some((loaded, path)) => Some(TrainedSkill::from_checkpoint(name, loaded, path)?),
+            None => newest(name)?
+                .map(|(loaded, path)| TrainedSkill::from_checkpoint(name, &loaded, &path))
+                .transpose()?,
+        };
+        let known = own.is_some();
+        trained.extend(own);
+        ensure!(
+            known || a.partial,
+            "expected {name} to be trained, found no checkpoint: leave it out by --partial"
+        );
     }
-    let mut ingredients = Vec::new();
-    for policy in &plan.policies {
-        ingredients.push(match together(&policy.name) {
-            Some((loaded, path)) => Ingredient::from_checkpoint(&policy.name, loaded, path)?,
-            None => Ingredient::load(&policy.name, &checkpoint(&policy.name))?,
-        });
-    }
-    let pack = bind(&plan, &ingredients, normalisers, model)?;
+    trained.retain(|t| !a.without.contains(&t.skill));
+    plan = plan.only(|skill| trained.iter().any(|t| t.skill == skill));
+    let skills = trained;
+    let pack = bind(&plan, &skills, normalisers, model)?;
     write_atomically(&a.out, &pack.to_bytes())
         .with_context(|| format!("cannot write {}", a.out.display()))?;
-    for (node, ingredient) in pack.graph().nodes().iter().zip(&ingredients) {
-        println!("{:8} {}", node.name, ingredient.origin);
+    for (node, ingredient) in pack.graph().nodes().iter().zip(&skills) {
+        say(format_args!("{:8} {}", node.name, ingredient.origin))?;
     }
-    println!("wrote {}", a.out.display());
+    say(format_args!("wrote {}", a.out.display()))?;
     Ok(())
 }

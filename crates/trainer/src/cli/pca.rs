@@ -11,9 +11,11 @@ use physics_bridge::Model;
 use plotters::prelude::*;
 use policy_core::{CharacterPack, Mlp, OBSERVATION_LEN};
 use rayon::prelude::*;
-use trainer::checkpoint::write_atomically;
 use trainer::evaluate::Subject;
 use trainer::pca::{Components, correlation};
+use trainer::storage::write_atomically;
+
+use super::output::say;
 
 /// Arguments of the verb.
 #[derive(Args)]
@@ -83,10 +85,10 @@ pub(crate) fn run(model: &Model, arguments: &Arguments) -> Result<()> {
         }
     }
     let share = |c: &Components| 100.0 * c.variances.iter().sum::<f64>() / c.total_variance.max(1e-12);
-    println!("states: two components hold {:.0} % of the variance", share(&states));
-    println!("parameters: two components hold {:.0} % of the variance", share(&components));
-    println!("correlation of distances: {:.2}", correlation(&of_parameters, &of_states));
-    println!("wrote {}", arguments.out.display());
+    say(format_args!("states: two components hold {:.0} % of the variance", share(&states)))?;
+    say(format_args!("parameters: two components hold {:.0} % of the variance", share(&components)))?;
+    say(format_args!("correlation of distances: {:.2}", correlation(&of_parameters, &of_states)))?;
+    say(format_args!("wrote {}", arguments.out.display()))?;
     Ok(())
 }
 

@@ -7,12 +7,14 @@ use anyhow::{Context, Result};
 use clap::Args;
 use physics_bridge::Model;
 use policy_core::{Body, CharacterPack, CharacterState};
-use trainer::checkpoint::write_atomically;
 use trainer::clip::ClipFolder;
 use trainer::env::DT_SECS;
 use trainer::evaluate::{STANCE_METRES, clip_states, pose_error, watch, watch_layers, watch_skill};
 use trainer::recipe::Recipe;
+use trainer::storage::write_atomically;
 use trainer::strip::{Row, draw};
+
+use super::output::say;
 
 /// Arguments of the verb.
 #[derive(Args)]
@@ -42,7 +44,7 @@ pub(crate) fn run(model: &Model, recipes: &Path, clips: &ClipFolder, a: &Argumen
         let clip = clip_states(model, &clips.load(name)?)?;
         let motion = watch(model, &pack, index);
         if motion.len() < span {
-            println!("{}: falls before it can be drawn", node.name);
+            say(format_args!("{}: falls before it can be drawn", node.name))?;
             continue;
         }
         let clip: Vec<CharacterState> = clip.iter().cycle().take(span).copied().collect();
@@ -110,7 +112,7 @@ fn layers(model: &Model, pack: &Arc<CharacterPack>, a: &Arguments) -> Result<()>
         (format!("{} alone", names[1]), [1.0; 3]),
     ] {
         let Some(states) = watch_layers(model, pack, (from, to), t) else {
-            println!("{caption}: falls before it can be drawn");
+            say(format_args!("{caption}: falls before it can be drawn"))?;
             continue;
         };
         // From a moment at which the right foot comes down, after 4 s.
@@ -128,6 +130,6 @@ fn write(folder: &Path, name: &str, rows: &[Row]) -> Result<()> {
     let path = folder.join(format!("{name}.svg"));
     write_atomically(&path, draw(rows).as_bytes())
         .with_context(|| format!("cannot write {}", path.display()))?;
-    println!("wrote {}", path.display());
+    say(format_args!("wrote {}", path.display()))?;
     Ok(())
 }

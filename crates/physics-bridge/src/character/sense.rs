@@ -1,0 +1,150 @@
+//! What can be read of a character without changing it.
+
+use glam::{DMat3, DVec3, Vec3};
+use mujoco_rs::wrappers::mj_data::MjData;
+use mujoco_rs::wrappers::mj_model::MjModel;
+use policy_core::{BodyId, CharacterState};
+use std::sync::Arc;
+
+use super::{Character, Contact};
+use crate::description::convert::rotation;
+use crate::description::layout::Layout;
+use crate::description::model::Model;
+use crate::description::pose::{BodyPoses, Pose};
+
+impl Character {
+    /// Writes what a policy senses: motion of the body frames in world axes, joint velocities, and the
+    /// height of the ground below the root. Allocates only when `out` was made for another skeleton.
+    pub fn sense_into(&self, out: &mut CharacterState) {
+        if !out.fits(self.model.skeleton()) {
+            *out = CharacterState::new(self.model.skeleton());
+        }
+        sense_into(&self.data, &self.model, out);
+    }
+
+    /// Writes where the bodies are. Allocates only when `out` was made for another skeleton.
+    pub fn poses_into(&self, out: &mut BodyPoses) {
+        let (xpos, xquat) = (self.data.xpos(), self.data.xquat());
+        let ids = &self.model.layout().body_ids;
+        out.positions.clear();
+        out.positions.extend(ids.iter().map(|&id| DVec3::from(xpos[id]).as_vec3()));
+        out.rotations.clear();
+        out.rotations.extend(ids.iter().map(|&id| rotation(xquat[id])));
+    }
+
+    /// Position and velocity now, in full precision. Allocates; see [`Character::pose_into`].
+    #[must_use]
+    pub fn pose(&self) -> Pose {
+        let mut pose = Pose::new(self.model.skeleton());
+        self.pose_into(&mut pose);
+        pose
+    }
+
+    /// Writes position and velocity, in full precision. Allocates only when `out` was made for another
+    /// skeleton.
+    pub fn pose_into(&self, out: &mut Pose) {
+        let (layout, stand) = (self.model.layout(), self.model.stand());
+        out.qpos.resize(stand.qpos.len(), 0.0);
+        out.qvel.resize(stand.qvel.len(), 0.0);
+        layout.our_qpos(self.data.qpos(), &mut out.qpos);
+        layout.our_qvel(self.data.qvel(), &mut out.qvel);
+    }
+
+    /// Centre of mass of the whole character, metres, world space.
+    #[must_use]
+    pub fn centre_of_mass(&self) -> Vec3 {
+        velocity_reference(&self.data, self.model.layout()).as_vec3()
+    }
+
+    /// Velocity of the centre of mass, metres per second, world space.
+    #[must_use]
+    pub fn centre_of_mass_velocity(&self) -> Vec3 {
+        let (masses, xipos, cvel) = (self.data.model().body_mass(), self.data.xipos(), self.data.cvel());
+        let reference = velocity_reference(&self.data, self.model.layout());
+        let (mut momentum, mut mass) = (DVec3::ZERO, 0.0);
+        for &id in &self.model.layout().body_ids {
+            momentum += masses[id] * velocity_at(cvel[id], DVec3::from(xipos[id]) - reference).1;
+            mass += masses[id];
+        }
+        (momentum / mass).as_vec3()
+    }
+
+    /// Speed of a body's frame, metres per second, world space.
+    ///
+    /// # Panics
+    /// When there is no such body.
+    #[must_use]
+    pub fn speed_of(&self, body: BodyId) -> f32 {
+        let id = self.model.layout().body_ids[body.index()];
+        let offset = DVec3::from(self.data.xpos()[id]) - velocity_reference(&self.data, self.model.layout());
+        velocity_at(self.data.cvel()[id], offset).1.length() as f32
+    }
+
+    /// Where the character touched during the last substep, at most 64 points or four for each body. Empty
+    /// until the first step after it was posed or restored.
+    #[must_use]
+    pub fn contacts(&self) -> &[Contact] {
+        &self.contacts
+    }
+
+    /// Height of the lowest point of the character above the ground below that point, metres; negative when
+    /// it is in the ground. Exact on flat ground, close on a terrain.
+    #[must_use]
+    pub fn clearance(&self) -> f32 {
+        self.clearance_where(|_| true)
+    }
+
+    /// The same of the lowest point of one body.
+    #[must_use]
+    pub fn clearance_of(&self, body: BodyId) -> f32 {
+        self.clearance_where(|other| other == body)
+    }
+
+    fn clearance_where(&self, counts: impl Fn(BodyId) -> bool) -> f32 {
+        let (centres, matrices) = (self.data.geom_xpos(), self.data.geom_xmat());
+        let mut clearance = f64::INFINITY;
+        let shapes = self.model.shapes().iter().zip(self.model.shape_geoms());
+        for (shape, &geom) in shapes.filter(|(shape, _)| counts(shape.body)) {
+            // MuJoCo's matrices are row by row, glam's column by column.
+            let world_from_shape = DMat3::from_cols_array(&matrices[geom]).transpose();
+            shape.kind.low_points(DVec3::from(centres[geom]), world_from_shape, |point, below| {
+                let ground = self.model.height_at(point.x as f32, point.y as f32);
+                clearance = clearance.min(point.z - below - f64::from(ground));
+            });
+        }
+        clearance as f32
+    }
+}
+
+/// Writes what a policy senses into a state of the model's skeleton.
+pub(super) fn sense_into(data: &MjData<Arc<MjModel>>, model: &Model, out: &mut CharacterState) {
+    let layout = model.layout();
+    let (xpos, xquat, cvel) = (data.xpos(), data.xquat(), data.cvel());
+    let reference = velocity_reference(data, layout);
+    for (body, &id) in out.bodies.iter_mut().zip(&layout.body_ids) {
+        let position = DVec3::from(xpos[id]);
+        let (angular, linear) = velocity_at(cvel[id], position - reference);
+        body.position = position.as_vec3();
+        body.rotation = rotation(xquat[id]);
+        body.linear_velocity = linear.as_vec3();
+        body.angular_velocity = angular.as_vec3();
+    }
+    let qvel = data.qvel();
+    for (velocity, joint) in out.joint_velocities.iter_mut().zip(&layout.joints) {
+        *velocity = qvel[joint.dof] as f32;
+    }
+    let root = out.root().position;
+    out.ground_height = model.height_at(root.x, root.y);
+}
+
+/// The point that MuJoCo's body velocities are of: it moves with the body, and is now where the centre of mass of
+/// the whole character is.
+pub(super) fn velocity_reference(data: &MjData<Arc<MjModel>>, layout: &Layout) -> DVec3 {
+    DVec3::from(data.subtree_com()[layout.body_ids[0]])
+}
+
+/// Angular velocity, and linear velocity `offset` away from the reference point.
+pub(super) fn velocity_at([wx, wy, wz, vx, vy, vz]: [f64; 6], offset: DVec3) -> (DVec3, DVec3) {
+    let angular = DVec3::new(wx, wy, wz);
+    (angular, DVec3::new(vx, vy, vz) + angular.cross(offset))
+}

@@ -1,0 +1,16 @@
+//! The immutable half: an MJCF, compiled and checked, with its skeleton, ground and shapes. Imports neither
+//! characters nor crowds.
+
+pub(crate) mod convert;
+pub(crate) mod ground;
+pub(crate) mod ground_kind;
+pub(crate) mod layout;
+mod logging;
+mod mjcf;
+pub(crate) mod model;
+pub(crate) mod model_error;
+pub(crate) mod pose;
+pub(crate) mod settings;
+pub(crate) mod shape;
+mod skeleton;
+pub(crate) mod terrain;

@@ -1,0 +1,106 @@
+//! Episodic skills of a controller: requests, falls, ends, and the hand-over of joint targets.
+
+use alloc::sync::Arc;
+
+use super::Controller;
+use crate::controller_state::ControllerState;
+use crate::fall::{Heights, fall_height};
+use crate::ids::SkillId;
+use crate::path::GraphPosition;
+use crate::skill::{Refusal, SkillEnd, SkillProgress};
+use crate::state::CharacterState;
+
+impl Controller {
+    /// Runs the skill that is on for a tick, and ends it when it has come to its end.
+    pub(super) fn run_skill(&mut self, state: &CharacterState, heights: Heights, dt: f32) {
+        let Some(mut progress) = self.state.report.skill else { return };
+        let pack = Arc::clone(&self.pack);
+        let skill = &pack.skills()[progress.skill.index()];
+        let history = &mut self.state.history;
+        let score = skill.discriminator.and_then(|d| self.scorer.score(&pack, d, state, history));
+        let Some(end) = progress.tick(&skill.end, score, heights.root, dt) else {
+            self.state.report.skill = Some(progress);
+            return;
+        };
+        self.state.report.skill_ended = Some((progress.skill, end));
+        self.state.report.skill = None;
+        self.set_position(GraphPosition::node(skill.returns_to));
+        self.state.fall.reset();
+        self.begin_hand_over();
+        // A character that lies where its time to stand up is over tries again at once.
+        let low = fall_height(pack.graph(), self.state.report.position).is_some_and(|h| heights.root < h);
+        if self.config.auto_recover && low && pack.recovery() == Some(progress.skill) {
+            self.start_skill(progress.skill);
+        }
+    }
+
+    /// Starts the recovery skill after a fall.
+    pub(super) fn detect_fall(&mut self, heights: Heights, dt: f32) {
+        let report = &mut self.state.report;
+        let limit = match report.skill {
+            Some(_) => None,
+            None => fall_height(self.pack.graph(), report.position),
+        };
+        report.fallen = self.state.fall.tick(limit, heights.root, dt);
+        let recovery = self.pack.recovery().filter(|_| self.config.auto_recover && report.fallen);
+        if let Some(recovery) = recovery {
+            self.start_skill(recovery);
+        }
+    }
+
+    /// Takes a request, and starts the pending skill where the position on the graph allows it.
+    pub(super) fn request_skill(&mut self, request: Option<SkillId>, heights: Heights) {
+        if let Some(skill) = request {
+            match self.refusal(skill, heights) {
+                Some(why) => self.state.report.skill_refused = Some((skill, why)),
+                None => self.state.report.pending_skill = Some(skill),
+            }
+        }
+        let Some(pending) = self.state.report.pending_skill else { return };
+        let skill = &self.pack.skills()[pending.index()];
+        let ready = skill.starts_from(self.state.report.position.nearest_node());
+        if ready && self.state.report.skill.is_none() {
+            self.start_skill(pending);
+        }
+    }
+
+    /// Why a requested skill can only hurt. The recovery skill throws an upright character to the ground.
+    fn refusal(&self, skill: SkillId, heights: Heights) -> Option<Refusal> {
+        let Some(known) = self.pack.skills().get(skill.index()) else { return Some(Refusal::Unknown) };
+        let up = self.pack.graph().node(known.returns_to).fall_height.is_some_and(|h| heights.has_risen(h));
+        (up && self.pack.recovery() == Some(skill)).then_some(Refusal::Upright)
+    }
+
+    /// Starts a skill in place of whatever runs.
+    pub(super) fn start_skill(&mut self, skill: SkillId) {
+        let report = &mut self.state.report;
+        if let Some(running) = report.skill.replace(SkillProgress::start(skill)) {
+            report.skill_ended = Some((running.skill, SkillEnd::Interrupted));
+        }
+        (report.skill_started, report.pending_skill) = (Some(skill), None);
+        report.fallen = false;
+        self.state.fall.reset();
+        self.state.history.clear();
+        self.begin_hand_over();
+    }
+
+    /// Passes from the joint targets before a skill started or ended to the present policy's.
+    pub(super) fn hand_over(&mut self) {
+        let ControllerState { handover_secs, handover_from, targets, .. } = &mut self.state;
+        if *handover_secs <= 0.0 {
+            return;
+        }
+        let before = (*handover_secs / self.config.handover_secs).clamp(0.0, 1.0);
+        for (target, from) in targets.iter_mut().zip(handover_from) {
+            *target += before * (*from - *target);
+        }
+        *handover_secs = (*handover_secs - self.tick_secs).max(0.0);
+    }
+
+    fn begin_hand_over(&mut self) {
+        if self.config.handover_secs > 0.0 {
+            self.state.handover_from.copy_from_slice(&self.state.targets);
+            self.state.handover_secs = self.config.handover_secs;
+        }
+    }
+}

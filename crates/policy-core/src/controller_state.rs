@@ -1,0 +1,155 @@
+//! The mutable state of one controller as plain data: to save, send and restore.
+//!
+//! It holds all that the next tick depends on and no parameters of policies. Restored into a controller of the same pack
+//! and configuration, the next ticks give the same bits.
+
+use alloc::vec::Vec;
+
+use crate::evaluator::BlendRest;
+use crate::fall::FallDetector;
+use crate::features::FrameHistory;
+use crate::ids::SkillId;
+use crate::pack::CharacterPack;
+use crate::path::GraphPosition;
+use crate::report::TickReport;
+use crate::state::JointTargets;
+
+/// State of one [`Controller`](crate::Controller). Made once for a pack, then overwritten by
+/// [`Controller::save_into`](crate::Controller::save_into).
+#[derive(Clone, Debug, PartialEq)]
+pub struct ControllerState {
+    pub(crate) report: TickReport,
+    pub(crate) fall: FallDetector,
+    pub(crate) history: FrameHistory,
+    pub(crate) rest: BlendRest,
+    /// The skill that was dropped between ticks; the next tick reports it.
+    pub(crate) interrupted: Option<SkillId>,
+    pub(crate) targets: JointTargets,
+    /// Joint targets that a skill took over from.
+    pub(crate) handover_from: Vec<f32>,
+    /// Seconds that the hand-over takes yet.
+    pub(crate) handover_secs: f32,
+}
+
+/// Why a state can't be restored. The controller is unchanged.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[non_exhaustive]
+pub enum StateError {
+    /// The bytes have another length.
+    #[error("expected {expected} bytes of a controller's state, found {found}")]
+    Length {
+        /// Length for this pack.
+        expected: usize,
+        /// Length of the bytes.
+        found: usize,
+    },
+    /// The bytes are of another version, or no state at all.
+    #[error("expected a controller's state of version {expected}, found {found}")]
+    Version {
+        /// The version that this library reads.
+        expected: u32,
+        /// First four bytes, as a number.
+        found: u32,
+    },
+    /// A field has a value that no controller of this pack can have.
+    #[error("expected {expected} in {field} of a controller's state")]
+    Field {
+        /// The field.
+        field: &'static str,
+        /// What it should hold.
+        expected: &'static str,
+    },
+}
+
+impl ControllerState {
+    /// The state of a new controller of `pack`. Allocates; nothing else here does.
+    #[must_use]
+    pub fn new(pack: &CharacterPack) -> Self {
+        let skeleton = pack.skeleton();
+        Self {
+            report: TickReport::default(),
+            fall: FallDetector::default(),
+            history: FrameHistory::new(skeleton.frame_len()),
+            rest: BlendRest::default(),
+            interrupted: None,
+            targets: JointTargets::new(skeleton),
+            handover_from: alloc::vec![0.0; skeleton.joint_count()],
+            handover_secs: 0.0,
+        }
+    }
+
+    /// What the controller did in its last tick.
+    #[must_use]
+    pub fn report(&self) -> &TickReport {
+        &self.report
+    }
+
+    /// Copies `other` without allocating.
+    ///
+    /// # Panics
+    /// When `other` was made for a pack with another skeleton.
+    pub fn copy_from(&mut self, other: &Self) {
+        assert!(self.same_size(other), "states of one skeleton");
+        self.report = other.report;
+        self.fall = other.fall;
+        self.history.copy_from(&other.history);
+        self.rest = other.rest;
+        self.interrupted = other.interrupted;
+        self.targets.copy_from_slice(&other.targets);
+        self.handover_from.copy_from_slice(&other.handover_from);
+        self.handover_secs = other.handover_secs;
+    }
+
+    /// Makes it the state of a new controller again.
+    pub(crate) fn clear(&mut self) {
+        self.report = TickReport::default();
+        self.fall.reset();
+        self.history.reset();
+        self.rest = BlendRest::default();
+        self.interrupted = None;
+        self.targets.fill(0.0);
+        self.handover_from.fill(0.0);
+        self.handover_secs = 0.0;
+    }
+
+    pub(crate) fn same_size(&self, other: &Self) -> bool {
+        self.targets.len() == other.targets.len()
+            && self.history.parts().0.len() == other.history.parts().0.len()
+    }
+
+    /// Checks every index and number against a pack, so that nothing restored can fail later.
+    pub(crate) fn check(&self, pack: &CharacterPack) -> Result<(), StateError> {
+        let field = |field, expected, holds: bool| {
+            if holds { Ok(()) } else { Err(StateError::Field { field, expected }) }
+        };
+        let skeleton = pack.skeleton();
+        let sized = self.targets.len() == skeleton.joint_count()
+            && self.history.parts().0.len() == FrameHistory::new_len(skeleton.frame_len());
+        field("size", "the sizes of the pack's skeleton", sized)?;
+        let place = |position: GraphPosition| pack.graph().contains(position);
+        field("position", "a position on the graph", place(self.report.position))?;
+        field("goal", "a position on the graph", place(self.report.goal))?;
+        let policies = pack.policies().len();
+        let known = |blend: &crate::Blend| {
+            let good = |w: &f32| w.is_finite();
+            blend.terms().iter().all(|t| t.policy.index() < policies && t.weights.iter().all(good))
+        };
+        field("blend", "finite weights of the pack's policies", known(&self.report.blend))?;
+        field("resting blend", "finite weights of the pack's policies", known(&self.rest.last))?;
+        let some = self.rest.rested == 0 || !self.rest.last.terms().is_empty();
+        field("resting blend", "a policy", some)?;
+        let r = &self.report;
+        let skills = [r.skill.map(|s| s.skill), r.pending_skill, r.skill_started, self.interrupted];
+        let ended = [r.skill_ended.map(|(s, _)| s)];
+        let exists = |s: &SkillId| s.index() < pack.skills().len();
+        let all = skills.iter().chain(&ended).flatten().all(exists);
+        field("skill", "skills of the pack", all)?;
+        let mut numbers = self.targets.iter().chain(&self.handover_from).chain(self.history.parts().0);
+        let times = [self.fall.low_seconds, self.fall.rising_seconds, self.handover_secs];
+        let finite = numbers.all(|n| n.is_finite()) && times.iter().all(|t| t.is_finite());
+        field("numbers", "finite numbers", finite)?;
+        let progress = r.skill.map_or([0.0; 2], |s| [s.seconds, s.held_seconds]);
+        let counted = progress.iter().all(|n| n.is_finite()) && r.target.iter().all(|n| n.is_finite());
+        field("report", "finite numbers", counted)
+    }
+}
