@@ -29,7 +29,10 @@ pub fn parse(name: &str, text: &str) -> Result<Clip, ClipError> {
     let file: File = serde_json::from_str(text).map_err(|e| wrong(e.to_string()))?;
     let twice = |i: usize| file.bodies[..i].contains(&file.bodies[i]);
     if !(1..=MAX_SKELETON_PARTS).contains(&file.bodies.len()) || (1..file.bodies.len()).any(twice) {
-        return Err(wrong(format!("expected 1 to {MAX_SKELETON_PARTS} bodies of different names, found {:?}", file.bodies)));
+        return Err(wrong(format!(
+            "expected 1 to {MAX_SKELETON_PARTS} bodies of different names, found {:?}",
+            file.bodies
+        )));
     }
     for (field, expected, found) in [("up", "z", &file.up), ("quat", "xyzw", &file.quat)] {
         if let Some(found) = found.as_ref().filter(|f| *f != expected) {

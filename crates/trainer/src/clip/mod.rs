@@ -63,7 +63,12 @@ impl Clip {
         for frame in 0..frames {
             let (expected, found) = (self.bodies.len(), self.local_rotations[frame].len());
             if found != expected || found == 0 {
-                return Err(ClipError::Lengths { clip: name(), field: "rotations of a frame", expected, found });
+                return Err(ClipError::Lengths {
+                    clip: name(),
+                    field: "rotations of a frame",
+                    expected,
+                    found,
+                });
             }
             let finite = self.times[frame].is_finite()
                 && self.root_positions[frame].is_finite()
@@ -141,7 +146,8 @@ impl Clip {
     pub fn mirrored(&self) -> Self {
         let flip = |q: Quat| Quat::from_xyzw(-q.x, q.y, -q.z, q.w);
         let twins: Vec<usize> = self.bodies.iter().enumerate().map(|(i, name)| self.twin(i, name)).collect();
-        let mirror = |rotations: &Vec<Quat>| -> Vec<Quat> { twins.iter().map(|i| flip(rotations[*i])).collect() };
+        let mirror =
+            |rotations: &Vec<Quat>| -> Vec<Quat> { twins.iter().map(|i| flip(rotations[*i])).collect() };
         Self {
             name: format!("{} (mirrored)", self.name),
             root_positions: self.root_positions.iter().map(|p| Vec3::new(p.x, -p.y, p.z)).collect(),

@@ -24,10 +24,7 @@ fn read(name: &str, bytes: &[u8]) -> Result<Clip, String> {
     let bodies = humanoid::bodies();
     let count = bodies.len();
     if rotations.shape.len() != 3 || rotations.shape[1..] != [count, 4] {
-        return Err(format!(
-            "expected rotations of shape [frames, {count}, 4], found {:?}",
-            rotations.shape
-        ));
+        return Err(format!("expected rotations of shape [frames, {count}, 4], found {:?}", rotations.shape));
     }
     if positions.shape != [rotations.shape[0], 3] {
         return Err(format!("expected translations of shape [frames, 3], found {:?}", positions.shape));

@@ -120,10 +120,7 @@ fn the_mirror_of_the_mirror_is_the_clip() {
     assert_eq!(twice.local_rotations, clip.local_rotations);
     let once = clip.mirrored();
     assert_eq!(once.root_positions[3].y, -0.2);
-    assert_eq!(
-        once.local_rotations[5][body("left_shin")],
-        clip.local_rotations[5][body("right_shin")]
-    );
+    assert_eq!(once.local_rotations[5][body("left_shin")], clip.local_rotations[5][body("right_shin")]);
 }
 
 #[test]

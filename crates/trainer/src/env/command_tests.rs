@@ -17,7 +17,8 @@ fn edge() -> TrainingGraph {
     let node = |name: &str, speed_mps, share| {
         GraphNode::new(name, &with(CommandConfig { speed_mps, ..CommandConfig::default() }), share)
     };
-    TrainingGraph::along(vec![node("walk", 1.25, 0.3), node("idle", 0.0, 0.7)], &[vec![0, 1]], [1.0; 2]).unwrap()
+    TrainingGraph::along(vec![node("walk", 1.25, 0.3), node("idle", 0.0, 0.7)], &[vec![0, 1]], [1.0; 2])
+        .unwrap()
 }
 
 #[test]
@@ -143,7 +144,10 @@ fn a_sweep_goes_to_both_ends_and_does_not_rest() {
         for _ in 0..250 {
             let before = graph.pair_and_blend(command.position).1;
             command.advance(&config, &graph, Vec2::ZERO, UP, &mut rng);
-            ends = [ends[0] || graph.pair_and_blend(command.position).1 == 0.0, ends[1] || graph.pair_and_blend(command.position).1 == 1.0];
+            ends = [
+                ends[0] || graph.pair_and_blend(command.position).1 == 0.0,
+                ends[1] || graph.pair_and_blend(command.position).1 == 1.0,
+            ];
             still += usize::from(graph.pair_and_blend(command.position).1 == before);
         }
         assert!(ends == [true; 2] && still <= 5, "{ends:?} {still}");
@@ -157,7 +161,8 @@ fn the_position_follows_what_is_asked_no_faster_than_an_edge_allows() {
     let nodes = [("walk", 1.25), ("idle", 0.0)].map(|(name, speed_mps)| {
         GraphNode::new(name, &with(CommandConfig { speed_mps, ..config.clone() }), 1.0)
     });
-    let (graph, mut rng) = (TrainingGraph::along(nodes.to_vec(), &[vec![0, 1]], [1.0; 2]).unwrap(), Rng::new(3, 1));
+    let (graph, mut rng) =
+        (TrainingGraph::along(nodes.to_vec(), &[vec![0, 1]], [1.0; 2]).unwrap(), Rng::new(3, 1));
     let mut moved = 0.0;
     for _ in 0..50 {
         let mut command = Command::start(&config, &graph, false, &mut rng);

@@ -2,8 +2,8 @@
 //! discriminator frames and states for reference-state initialisation.
 
 use physics_bridge::{Model, Pose};
-use policy_core::{CharacterState, JointActuation};
 use policy_core::training::{FRAME_AGES, HISTORY_LEN, Normaliser, discriminator_frame_into};
+use policy_core::{CharacterState, JointActuation};
 
 use super::fitted::{Fitted, SourceError, fit};
 use super::tracking::TrackedState;

@@ -202,7 +202,8 @@ impl Env {
             return terms;
         }
         let weight = self.character.model().mass_kg() as f32 * GRAVITY;
-        let foot_slip_mps = foot_slip_mps(context.skeleton.feet(), &self.state, self.character.contacts(), weight);
+        let foot_slip_mps =
+            foot_slip_mps(context.skeleton.feet(), &self.state, self.character.contacts(), weight);
         RewardTerms { foot_slip_mps, ..terms }
     }
 

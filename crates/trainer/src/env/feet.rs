@@ -90,7 +90,10 @@ mod tests {
         };
         assert_eq!(others(&pose), others(&before), "nothing but the ankle is turned");
         character.set_pose(&pose.qpos, &pose.qvel).unwrap();
-        (pose.qpos[RIGHT_ANKLE_Y] - before.qpos[RIGHT_ANKLE_Y], character.clearance_of(model.skeleton().body_named("right_foot").unwrap()))
+        (
+            pose.qpos[RIGHT_ANKLE_Y] - before.qpos[RIGHT_ANKLE_Y],
+            character.clearance_of(model.skeleton().body_named("right_foot").unwrap()),
+        )
     }
 
     #[test]

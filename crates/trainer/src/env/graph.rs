@@ -87,11 +87,7 @@ impl TrainingGraph {
     ///
     /// # Errors
     /// When there is no path, or one has fewer than two nodes, a node twice in a row, or a node that is not there.
-    pub fn along(
-        nodes: Vec<GraphNode>,
-        paths: &[Vec<usize>],
-        factors: [f32; 2],
-    ) -> Result<Self, GraphError> {
+    pub fn along(nodes: Vec<GraphNode>, paths: &[Vec<usize>], factors: [f32; 2]) -> Result<Self, GraphError> {
         let mut pairs: Vec<[usize; 2]> = Vec::new();
         for pair in paths.iter().flat_map(|path| path.windows(2)).map(|pair| [pair[0], pair[1]]) {
             if !pairs.contains(&pair) && !pairs.contains(&[pair[1], pair[0]]) {
@@ -101,9 +97,10 @@ impl TrainingGraph {
         if paths.is_empty() || pairs.iter().flatten().any(|node| *node >= nodes.len()) {
             return Err(GraphError::Path { path: "0".into(), from: 0, to: None });
         }
-        let named = paths.iter().enumerate().map(|(index, path)| {
-            (index.to_string(), path.iter().map(|node| NodeId::new(*node)).collect())
-        });
+        let named = paths
+            .iter()
+            .enumerate()
+            .map(|(index, path)| (index.to_string(), path.iter().map(|node| NodeId::new(*node)).collect()));
         let graph = policy_graph(&nodes, &pairs, named.collect(), factors)?;
         Ok(Self { graph, nodes, pairs, lone: None })
     }

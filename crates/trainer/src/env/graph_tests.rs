@@ -46,7 +46,10 @@ fn a_node_alone_is_its_own_pair() {
     let path = graph.sample_path(&mut rng);
     let position = graph.position(path, 0.0);
     assert_eq!((graph.pairs(), graph.pair_and_blend(position)), (&[[1, 1]][..], (0, 1.0)));
-    assert_eq!((graph.speed_mps(position), graph.weight(position, 0), graph.weight(position, 1)), (0.5, 0.0, 1.0));
+    assert_eq!(
+        (graph.speed_mps(position), graph.weight(position, 0), graph.weight(position, 1)),
+        (0.5, 0.0, 1.0)
+    );
     assert_eq!((graph.sample(path, &mut rng), graph.end(path), graph.context_len()), (0.0, 0.0, 1));
 }
 

@@ -99,7 +99,12 @@ impl RewardTerms {
 /// How fast the feet slip over what they stand on, metres per second, weighted by the share of the character's weight that
 /// presses there; at most 1.
 #[must_use]
-pub fn foot_slip_mps(feet: &[BodyId], state: &CharacterState, contacts: &[Contact], weight_newton: f32) -> f32 {
+pub fn foot_slip_mps(
+    feet: &[BodyId],
+    state: &CharacterState,
+    contacts: &[Contact],
+    weight_newton: f32,
+) -> f32 {
     let feet = contacts.iter().filter(|contact| feet.contains(&contact.body));
     let sum: f32 = feet
         .map(|contact| {

@@ -30,8 +30,8 @@ const CASES: [(&str, Change); 13] = [
     ("friction_x1.5", Change::Settings(|settings| settings.friction = 1.5)),
     ("gravity_x0.8", Change::Settings(|settings| settings.gravity = 0.8)),
     ("gravity_x1.2", Change::Settings(|settings| settings.gravity = 1.2)),
-    ("mass_x0.8", Change::Attribute("density", 0.8)),
-    ("mass_x1.2", Change::Attribute("density", 1.2)),
+    ("mass_x0.8", Change::Settings(|settings| settings.mass = 0.8)),
+    ("mass_x1.2", Change::Settings(|settings| settings.mass = 1.2)),
     ("timestep_x0.5", Change::Attribute("timestep", 0.5)),
     ("timestep_x2", Change::Attribute("timestep", 2.0)),
     ("action_noise_0.1", Change::Noise),
@@ -52,8 +52,8 @@ pub fn measure_robustness(
         let measure = |gait: &_| {
             rig.each(&seeds, secs, |seed| {
                 roam(
+                    rig,
                     &model,
-                    rig.pack,
                     gait,
                     |none, trial, rng| match change {
                         Change::LateTick => none.late(trial.controller.joint_targets()),
@@ -81,7 +81,10 @@ fn changed(model: &Model, change: Change) -> Result<Model, ModelError> {
             change(&mut settings);
             model.with_settings(settings)
         }
-        Change::Attribute(name, factor) => Model::from_mjcf(&scaled(model.mjcf(), name, factor)),
+        Change::Attribute(name, factor) => {
+            let text = scaled(model.mjcf(), name, factor);
+            Model::from_mjcf_with_skeleton(&text, model.skeleton().clone())
+        }
         Change::Nothing | Change::LateTick | Change::Noise => Ok(model.clone()),
     }
 }
