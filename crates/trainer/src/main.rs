@@ -79,9 +79,13 @@ fn run(arguments: &Arguments) -> Result<ExitCode> {
         Verb::Train(train) => return cli::train::run(&arguments.workspace()?, train),
         Verb::Pack(verb) => {
             let newest = |skill: &str| newest_or_kept(&arguments.runs, &arguments.kept, skill);
-            cli::pack::run(&arguments.model()?, &arguments.normalisers()?, &newest, verb)
+            let model = arguments.model()?;
+            cli::pack::run(&model, &arguments.normalisers(&model)?, &newest, verb)
         }
-        Verb::Keep(verb) => cli::keep::run(&arguments.normalisers()?, &arguments.runs, &arguments.kept, verb),
+        Verb::Keep(verb) => {
+            let normalisers = arguments.normalisers(&arguments.model()?)?;
+            cli::keep::run(&normalisers, &arguments.runs, &arguments.kept, verb)
+        }
         Verb::Average(verb) => cli::average::run(verb),
         Verb::Evaluate(verb) => {
             let clips = arguments.clips().ok();
@@ -114,20 +118,21 @@ impl Arguments {
         self.runs.join("normaliser.safetensors")
     }
 
-    fn normalisers(&self) -> Result<Normalisers> {
+    fn normalisers(&self, model: &Model) -> Result<Normalisers> {
         let (own, kept) = (self.normaliser_path(), self.kept.join("normaliser.safetensors"));
-        normaliser_file::load(if own.exists() || !kept.exists() { &own } else { &kept })
+        normaliser_file::load(if own.exists() || !kept.exists() { &own } else { &kept }, model.skeleton())
             .context("run `trainer normaliser` first: all skills share one normaliser")
     }
 
     fn workspace(&self) -> Result<Workspace> {
+        let model = self.model()?;
         Ok(Workspace {
             recipes: self.recipes.clone(),
             runs: self.runs.clone(),
             kept: self.kept.clone(),
             clips: self.clips()?,
-            model: self.model()?,
-            normalisers: self.normalisers()?,
+            normalisers: self.normalisers(&model)?,
+            model,
             parents: None,
         })
     }

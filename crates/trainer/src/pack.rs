@@ -3,14 +3,18 @@
 use std::path::{Path, PathBuf};
 
 use physics_bridge::Model;
-use policy_core::{
-    ActionScaling, BODY_NAMES, CharacterPack, DISCRIMINATOR_LAYOUT, DiscriminatorEntry, JOINT_NAMES, Layer,
-    Manifest, Mlp, MlpError, OBSERVATION_LAYOUT, PACK_FORMAT, PACK_VERSION, PackError, PackTensors,
-    PolicyEntry,
+use policy_core::format::{
+    DISCRIMINATOR_LAYOUT, DiscriminatorEntry, Manifest, OBSERVATION_LAYOUT, PACK_FORMAT, PACK_VERSION,
+    PolicyEntry, SkeletonEntry, Storage,
 };
+use policy_core::training::{ActionScaling, Layer, MlpError, PackTensors};
+use policy_core::{CharacterPack, Mlp, PackError};
 
+mod distil;
 mod plan;
+mod rollouts;
 
+pub use distil::{Agreement, DISTILLED_HIDDEN, distil};
 pub use plan::{PackPlan, PlannedPolicy};
 
 use crate::checkpoint::{ACTOR, Checkpoint, CheckpointError, DISCRIMINATOR, EMA};
@@ -109,7 +113,7 @@ impl TrainedSkill {
     }
 }
 
-/// Binds the skills of `plan` into a pack.
+/// Binds the skills of `plan` into a pack, with the body of `model` and, if there is one, a binary glTF mesh.
 ///
 /// # Errors
 /// When a skill of the plan is not trained, or policy-core refuses the parts.
@@ -118,9 +122,10 @@ pub fn bind(
     trained: &[TrainedSkill],
     normalisers: &Normalisers,
     model: &Model,
+    mesh: Option<Vec<u8>>,
 ) -> Result<CharacterPack, BindError> {
-    let (low, high) = model.joint_limits();
-    let scaling = ActionScaling::from_joint_limits(low, high).map_err(PackError::from)?;
+    let skeleton = model.skeleton();
+    let scaling = ActionScaling::from_skeleton(skeleton);
     let mut scorers: Vec<&str> = plan.skills.iter().filter_map(|s| s.discriminator.as_deref()).collect();
     scorers.sort_unstable();
     scorers.dedup();
@@ -145,27 +150,34 @@ pub fn bind(
         });
     }
     let mut discriminators = Vec::new();
-    let mut judge_entries = Vec::new();
+    let mut discriminator_entries = Vec::new();
     for name in scorers {
         let network = &find(name)?.discriminator;
         discriminators.push(mlp(network, name, "discriminator")?);
-        judge_entries.push(DiscriminatorEntry { name: name.into(), layers: network.sizes().to_vec() });
+        discriminator_entries.push(DiscriminatorEntry {
+            name: name.into(),
+            layers: network.sizes().to_vec(),
+            storage: Storage::F16,
+        });
     }
     let manifest = Manifest {
         format: PACK_FORMAT.into(),
         version: PACK_VERSION,
         character: plan.character.clone(),
-        control_hz: physics_bridge::CONTROL_HZ as f32,
+        control_hz: model.control_hz(),
         observation: OBSERVATION_LAYOUT.into(),
         discriminator: DISCRIMINATOR_LAYOUT.into(),
-        bodies: BODY_NAMES.iter().map(|n| (*n).to_owned()).collect(),
-        joints: JOINT_NAMES.iter().map(|n| (*n).to_owned()).collect(),
+        skeleton: SkeletonEntry::from(skeleton.as_ref()),
+        actuation: Some(model.actuation()),
+        credits: plan.credits.clone(),
+        mjcf: Some(model.mjcf().to_owned()),
+        checksum: None,
         action_centre: scaling.centre().to_vec(),
         action_gain: scaling.gain().to_vec(),
         policies: entries,
         edges: plan.edges.clone(),
         paths: plan.paths.clone(),
-        discriminators: judge_entries,
+        discriminators: discriminator_entries,
         skills: plan.skills.clone(),
         recovery: plan.recovery.clone(),
     };
@@ -174,6 +186,7 @@ pub fn bind(
         discriminators,
         observation_normaliser: normalisers.observation.clone(),
         discriminator_normaliser: normalisers.frame.clone(),
+        mesh,
     };
     Ok(CharacterPack::from_parts(manifest, tensors)?)
 }

@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use anyhow::{Context, Result, anyhow, ensure};
-use policy_core::{DOF_COUNT, POLICY_INPUT_LEN};
+use policy_core::{BodyId, Skeleton};
 
 use crate::Rng;
 use crate::amp::DiscriminatorLearner;
@@ -76,17 +76,20 @@ impl Workspace {
     /// One skill: from random parameters, or from its parent's and pulled towards them.
     fn skill_parts(&self, recipe: &Recipe, seed: u64) -> Result<Parts> {
         let mut rng = Rng::new(seed, 1);
+        let skeleton = self.model.skeleton();
+        let scored = skeleton.discriminator_input_len();
         let mut nodes = vec![GraphNode::new(&recipe.skill, &recipe.last().environment, EDGE_SHARES[1])];
-        let learning = DiscriminatorLearner::new(recipe.first().discriminator.clone(), None, seed, 2);
+        let learning = DiscriminatorLearner::new(recipe.first().discriminator.clone(), scored, None, seed, 2);
         let own =
             NodeDiscriminator { demonstrations: self.demonstrations(recipe)?, discriminator: Some(learning) };
         let mut start_demonstrations = self.start_clips(recipe)?;
-        let (actors, critic, scorers, path) = match &recipe.parent {
+        let (actors, critic, scorers) = match &recipe.parent {
             None => {
-                let sizes = [POLICY_INPUT_LEN, POLICY_HIDDEN[0], POLICY_HIDDEN[1], DOF_COUNT];
+                let [first, second] = POLICY_HIDDEN;
+                let sizes = [skeleton.policy_input_len(), first, second, skeleton.joint_count()];
                 let actor = Actor::learning(Network::new(&sizes, 0.01, &mut rng), None);
-                let critic = Network::new(&critic_sizes(recipe, 1), 0.1, &mut rng);
-                (vec![actor], critic, vec![own], vec![0])
+                let critic = Network::new(&critic_sizes(skeleton, recipe, 1), 0.1, &mut rng);
+                (vec![actor], critic, vec![own])
             }
             Some(parent) => {
                 let parent = self.skill(parent, &recipe.skill)?;
@@ -94,22 +97,27 @@ impl Workspace {
                 nodes.insert(0, GraphNode::new(skill, before, EDGE_SHARES[0]));
                 let actors =
                     vec![Actor::frozen(parent.actor.clone()), Actor::learning(parent.actor, Some(0))];
-                let sizes = critic_sizes(recipe, 1);
+                let sizes = critic_sizes(skeleton, recipe, 1);
                 let fits = parent.critic.sizes() == sizes;
                 let critic = if fits { parent.critic } else { Network::new(&sizes, 0.1, &mut rng) };
                 let config = recipe.first().discriminator.clone();
                 let known = Some(parent.discriminator);
-                let discriminator = recipe.edge.then(|| DiscriminatorLearner::new(config, known, seed, 3));
+                let discriminator =
+                    recipe.edge.then(|| DiscriminatorLearner::new(config, scored, known, seed, 3));
                 start_demonstrations.get_or_insert_with(|| parent.demonstrations.clone());
                 let scorer = NodeDiscriminator { demonstrations: parent.demonstrations, discriminator };
-                (actors, critic, vec![scorer, own], if recipe.edge { vec![0, 1] } else { vec![1] })
+                (actors, critic, vec![scorer, own])
             }
         };
-        let graph = TrainingGraph::new(nodes, vec![path]);
-        let learner = Learner::new(recipe.first().ppo.clone(), actors, graph.edges().to_vec(), critic, rng);
+        let factors = recipe.last().environment.command.edge_secs_factors;
+        let graph = match nodes.len() {
+            2 if recipe.edge => TrainingGraph::along(nodes, &[vec![0, 1]], factors)?,
+            count => TrainingGraph::alone(nodes, count - 1)?,
+        };
+        let learner = Learner::new(recipe.first().ppo.clone(), actors, graph.pairs().to_vec(), critic, rng);
         let discriminators = Discriminators::new(scorers, Vec::new());
-        let heights = heights(recipe)?;
-        Ok(Parts { graph, learner, discriminators, start_demonstrations, hand_over: None, heights })
+        let (heights, pushed) = bodies(recipe, skeleton)?;
+        Ok(Parts { graph, learner, discriminators, start_demonstrations, hand_over: None, heights, pushed })
     }
 
     /// Clips that a recipe names for starts.
@@ -120,16 +128,20 @@ impl Workspace {
     }
 }
 
-/// Heights that tell standing from lying, of the recipe's last phase.
-fn heights(recipe: &Recipe) -> Result<TerminationHeights> {
-    TerminationHeights::new(&recipe.last().environment.termination).map_err(|name| {
-        anyhow!("{}: expected bodies of the character in min_heights, found {name}", recipe.skill)
-    })
+/// Heights that tell standing from lying, and the bodies that are pushed, of the recipe's last phase.
+fn bodies(recipe: &Recipe, skeleton: &Skeleton) -> Result<(TerminationHeights, Vec<BodyId>)> {
+    let environment = &recipe.last().environment;
+    let unknown = |field: &'static str| {
+        move |name| anyhow!("{}: expected bodies of the character in {field}, found {name}", recipe.skill)
+    };
+    let heights =
+        TerminationHeights::new(&environment.termination, skeleton).map_err(unknown("min_heights"))?;
+    Ok((heights, environment.randomisation.pushed(skeleton).map_err(unknown("push_bodies"))?))
 }
 
 /// Sizes of a recipe's critic.
-fn critic_sizes(recipe: &Recipe, context_len: usize) -> Vec<usize> {
-    let mut sizes = vec![POLICY_INPUT_LEN + context_len];
+fn critic_sizes(skeleton: &Skeleton, recipe: &Recipe, context_len: usize) -> Vec<usize> {
+    let mut sizes = vec![skeleton.policy_input_len() + context_len];
     sizes.extend_from_slice(&recipe.first().ppo.critic_hidden);
     sizes.push(1);
     sizes

@@ -1,10 +1,8 @@
 //! Discriminators of style: one for each node of the graph, each with its clips. A character between two nodes is scored by both,
 //! by its blend weights. A discriminator learns from the characters that are nearly at its node.
 
-use policy_core::DISCRIMINATOR_INPUT_LEN;
-
 use crate::amp::{DiscriminatorConfig, DiscriminatorLearner, DiscriminatorReport, style_reward};
-use crate::env::{Demonstrations, GraphPosition, TrainingGraph};
+use crate::env::{Demonstrations, TrainingGraph};
 
 /// A discriminator learns from rows in which its node weighs more than this.
 const LEARNING_WEIGHT: f32 = 0.6;
@@ -75,17 +73,17 @@ impl Discriminators {
         let nodes = self.scorers.len() - self.halfway.len();
         for (index, scorer) in self.scorers.iter_mut().enumerate() {
             let Some(discriminator) = &mut scorer.discriminator else { continue };
-            let weight = |position: GraphPosition| weight(graph, &self.halfway, nodes, index, position);
+            let weight = |row| weight(graph, &self.halfway, nodes, index, row);
             rows_above(positions, weight, 0.0, &mut self.rows);
             self.gathered.clear();
-            for row in self.rows.iter().map(|r| *r as usize * DISCRIMINATOR_INPUT_LEN) {
-                self.gathered.extend_from_slice(&inputs[row..row + DISCRIMINATOR_INPUT_LEN]);
+            let width = discriminator.network.inputs();
+            for row in self.rows.iter().map(|r| *r as usize * width) {
+                self.gathered.extend_from_slice(&inputs[row..row + width]);
             }
             self.logits.resize(self.rows.len(), 0.0);
             discriminator.logits_into(&self.gathered, &mut self.logits);
             for (row, logit) in self.rows.iter().map(|r| *r as usize).zip(&self.logits) {
-                let position = GraphPosition { edge: positions.0[row], t: positions.1[row] };
-                self.style[row] += weight(position) * style_reward(*logit);
+                self.style[row] += weight((positions.0[row], positions.1[row])) * style_reward(*logit);
             }
         }
         &self.style
@@ -103,7 +101,7 @@ impl Discriminators {
         let nodes = self.scorers.len() - self.halfway.len();
         for (index, scorer) in self.scorers.iter_mut().enumerate() {
             let Some(discriminator) = &mut scorer.discriminator else { continue };
-            let weight = |position: GraphPosition| weight(graph, &self.halfway, nodes, index, position);
+            let weight = |row| weight(graph, &self.halfway, nodes, index, row);
             rows_above(positions, weight, LEARNING_WEIGHT, &mut self.rows);
             let report = discriminator.update(&scorer.demonstrations, inputs, &self.rows);
             sum.cross_entropy += report.cross_entropy;
@@ -118,32 +116,33 @@ impl Discriminators {
     }
 }
 
-/// Weight of a discriminator at a position: that of its node, or how near the position is to the middle of its edge. Where an edge has a
-/// scorer half-way, those of its ends weigh nothing beyond the middle.
+/// Weight of a discriminator in a row, given by its edge and blend weight: that of its node, or how near the row is to the middle
+/// of its edge. Where an edge has a discriminator half-way, those of its ends weigh nothing beyond the middle.
 fn weight(
     graph: &TrainingGraph,
     halfway: &[usize],
     nodes: usize,
     scorer: usize,
-    position: GraphPosition,
+    (edge, t): (usize, f32),
 ) -> f32 {
+    let of_node = || graph.weight(graph.position_of(edge, t), scorer);
     match halfway.get(scorer.wrapping_sub(nodes)) {
-        Some(edge) if *edge == position.edge => 1.0 - (2.0 * position.t - 1.0).abs(),
+        Some(middle) if *middle == edge => 1.0 - (2.0 * t - 1.0).abs(),
         Some(_) => 0.0,
-        None if halfway.contains(&position.edge) => (2.0 * graph.weight(position, scorer) - 1.0).max(0.0),
-        None => graph.weight(position, scorer),
+        None if halfway.contains(&edge) => (2.0 * of_node() - 1.0).max(0.0),
+        None => of_node(),
     }
 }
 
 /// Rows at positions where a discriminator weighs more than `least`.
 fn rows_above(
     (edges, blend): Positions<'_>,
-    weight: impl Fn(GraphPosition) -> f32,
+    weight: impl Fn((usize, f32)) -> f32,
     least: f32,
     out: &mut Vec<u32>,
 ) {
     out.clear();
-    let heavy = |(edge, t): (&usize, &f32)| weight(GraphPosition { edge: *edge, t: *t }) > least;
+    let heavy = |(edge, t): (&usize, &f32)| weight((*edge, *t)) > least;
     out.extend(
         (0..edges.len() as u32).zip(edges.iter().zip(blend)).filter(|(_, at)| heavy(*at)).map(|(r, _)| r),
     );
@@ -155,14 +154,15 @@ mod tests {
     use crate::env::{EnvironmentConfig, GraphNode};
 
     #[test]
-    fn the_weights_of_all_judges_sum_to_one() {
+    fn the_weights_of_all_discriminators_sum_to_one() {
         let node = |name: &str| GraphNode::new(name, &EnvironmentConfig::default(), 1.0);
-        let graph = TrainingGraph::new(["a", "b", "c"].map(node).to_vec(), vec![vec![0, 1, 2]]);
+        let graph =
+            TrainingGraph::along(["a", "b", "c"].map(node).to_vec(), &[vec![0, 1, 2]], [1.0; 2]).unwrap();
         let halfway = [0];
         for edge in 0..2 {
             for t in [0.0, 0.2, 0.5, 0.7, 1.0] {
-                let at = GraphPosition { edge, t };
-                let all: Vec<f32> = (0..4).map(|scorer| weight(&graph, &halfway, 3, scorer, at)).collect();
+                let all: Vec<f32> =
+                    (0..4).map(|scorer| weight(&graph, &halfway, 3, scorer, (edge, t))).collect();
                 assert!((all.iter().sum::<f32>() - 1.0).abs() < 1e-6, "{edge} {t} {all:?}");
                 assert_eq!(all[3] > 0.0, edge == 0 && t > 0.0 && t < 1.0);
                 assert!(edge == 1 || t != 0.5 || all[3] == 1.0);

@@ -1,13 +1,16 @@
 //! One iteration of training: rollout, style, returns, gradient steps. The loop around it belongs to the program.
 
+use std::sync::Arc;
+
 use physics_bridge::{Model, ModelError};
-use policy_core::{ActionScaling, DISCRIMINATOR_INPUT_LEN, DOF_COUNT, POLICY_INPUT_LEN};
+use policy_core::training::ActionScaling;
+use policy_core::{BodyId, GraphPosition, Skeleton};
 
 use crate::amp::DiscriminatorReport;
 use crate::checkpoint::{ACTOR, CRITIC, DISCRIMINATOR, EMA, PARENT_DISCRIMINATOR};
 use crate::env::{
-    Demonstrations, EnvContext, EnvironmentConfig, EpisodeReport, GraphNode, GraphPosition, HandOver,
-    Normalisers, RewardTerms, TerminationHeights, TrainingGraph, VecEnv,
+    Demonstrations, EnvContext, EnvironmentConfig, EpisodeReport, GraphNode, HandOver, Normalisers,
+    RewardTerms, TerminationHeights, TrainingGraph, VecEnv,
 };
 use crate::nn::{Adam, Network};
 use crate::ppo::{Done, Learner, Rollout, UpdateReport};
@@ -32,6 +35,8 @@ pub struct Parts {
     pub hand_over: Option<HandOver>,
     /// Heights that tell standing from lying.
     pub heights: TerminationHeights,
+    /// Bodies that are pushed.
+    pub pushed: Vec<BodyId>,
 }
 
 /// What the environments share beside the discriminators' clips.
@@ -42,6 +47,8 @@ struct Shared {
     hand_over: Option<HandOver>,
     normalisers: Normalisers,
     heights: TerminationHeights,
+    pushed: Vec<BodyId>,
+    skeleton: Arc<Skeleton>,
 }
 
 impl Shared {
@@ -58,6 +65,8 @@ impl Shared {
             hand_over: self.hand_over.as_ref(),
             normalisers: &self.normalisers,
             heights: &self.heights,
+            pushed: &self.pushed,
+            skeleton: &self.skeleton,
         }
     }
 }
@@ -108,18 +117,22 @@ impl Training {
     /// Starts a run.
     #[must_use]
     pub fn new(recipe: Recipe, model: &Model, normalisers: Normalisers, parts: Parts, seed: u64) -> Self {
-        let Parts { graph, learner, discriminators, start_demonstrations, hand_over, heights } = parts;
+        let Parts { graph, learner, discriminators, start_demonstrations, hand_over, heights, pushed } =
+            parts;
         let environment = &recipe.first().environment;
         let shape = (environment.horizon, environment.num_envs);
-        let (low, high) = model.joint_limits();
-        let scaling = ActionScaling::from_joint_limits(low, high).expect("a loaded model has finite limits");
+        let skeleton = model.skeleton().clone();
+        let scaling = ActionScaling::from_skeleton(&skeleton);
         let demonstrations = discriminators.demonstrations();
-        let shared = Shared { graph, start_demonstrations, hand_over, normalisers, heights };
+        let [inputs, actions] = [skeleton.policy_input_len(), skeleton.joint_count()];
+        let scored = skeleton.discriminator_input_len();
+        let shared =
+            Shared { graph, start_demonstrations, hand_over, normalisers, heights, pushed, skeleton };
         let context = shared.context(environment, &demonstrations);
         let envs = VecEnv::new(std::slice::from_ref(model), &scaling, &context, seed);
         Self {
-            rollout: Rollout::new(shape, (POLICY_INPUT_LEN, context.critic_inputs()), DOF_COUNT),
-            discriminator_inputs: vec![0.0; shape.0 * shape.1 * DISCRIMINATOR_INPUT_LEN],
+            rollout: Rollout::new(shape, (inputs, context.critic_inputs()), actions),
+            discriminator_inputs: vec![0.0; shape.0 * shape.1 * scored],
             samples: 0,
             phase: None,
             learner,
@@ -155,7 +168,7 @@ impl Training {
         }
         for (edge, scorer) in halfway.iter().zip(between) {
             let [from, to] =
-                self.shared.graph.edges()[*edge].map(|node| &self.shared.graph.nodes()[node].name);
+                self.shared.graph.pairs()[*edge].map(|node| &self.shared.graph.nodes()[node].name);
             if let Some(d) = &mut scorer.discriminator {
                 all.push((format!("{from}-{to}.{DISCRIMINATOR}"), &mut d.network, Some(&mut d.adam)));
             }
@@ -235,6 +248,9 @@ impl Training {
         let demonstrations = self.discriminators.demonstrations();
         let context = self.shared.context(config, &demonstrations);
         let width = context.critic_inputs();
+        let (skeleton, graph) = (context.skeleton, context.graph);
+        let [inputs, joints] = [skeleton.policy_input_len(), skeleton.joint_count()];
+        let scored = skeleton.discriminator_input_len();
         self.rollout.clear();
         let cloning = self.learner.config.behaviour_cloning > 0.0;
         self.rollout.cloning_targets.resize(if cloning { self.rollout.actions.len() } else { 0 }, f32::NAN);
@@ -245,25 +261,25 @@ impl Training {
             let seen = self.envs.inputs.chunks_exact(width).zip(self.envs.envs());
             for (row, (input, env)) in rows.clone().zip(seen) {
                 if cloning {
-                    let out = &mut self.rollout.cloning_targets[row * DOF_COUNT..(row + 1) * DOF_COUNT];
+                    let out = &mut self.rollout.cloning_targets[row * joints..(row + 1) * joints];
                     env.reference_action_into(&context, &self.scaling, out);
                 }
-                let at = row * POLICY_INPUT_LEN;
-                self.rollout.inputs[at..at + POLICY_INPUT_LEN].copy_from_slice(&input[..POLICY_INPUT_LEN]);
-                self.rollout.edge[row] = env.command.position.edge;
-                self.rollout.blend[row] = env.command.position.t;
+                let at = row * inputs;
+                self.rollout.inputs[at..at + inputs].copy_from_slice(&input[..inputs]);
+                (self.rollout.edge[row], self.rollout.blend[row]) =
+                    graph.pair_and_blend(env.command.position);
                 self.rollout.deterministic[row] = env.is_deterministic();
             }
             self.learner.act(&mut self.rollout, step);
-            let actions = &self.rollout.actions[rows.start * DOF_COUNT..rows.end * DOF_COUNT];
-            let frames = rows.start * DISCRIMINATOR_INPUT_LEN..rows.end * DISCRIMINATOR_INPUT_LEN;
+            let actions = &self.rollout.actions[rows.start * joints..rows.end * joints];
+            let frames = rows.start * scored..rows.end * scored;
             self.envs.step(&context, actions, &mut self.discriminator_inputs[frames]);
             self.rollout.record(step, self.envs.ends(), &self.envs.inputs_after);
             let at = self.rollout.edge[rows.clone()].iter().zip(&self.rollout.blend[rows.clone()]);
             let rewards = self.rollout.rewards[rows].iter_mut().zip(self.envs.terms());
             for (((reward, terms), end), (edge, t)) in rewards.zip(self.envs.ends()).zip(at) {
-                let position = GraphPosition { edge: *edge, t: *t };
-                *reward = reward_of(config, task_share(config, &self.shared.graph, position), terms, *end);
+                let share = task_share(config, graph, graph.position_of(*edge, *t));
+                *reward = reward_of(config, share, terms, *end);
             }
         }
         self.rollout.last_critic_inputs.copy_from_slice(&self.envs.inputs);
@@ -276,7 +292,7 @@ impl Training {
         let graph = &self.shared.graph;
         let positions = (&self.rollout.edge[..], &self.rollout.blend[..]);
         let style = self.discriminators.style(graph, positions, &self.discriminator_inputs);
-        let at = positions.0.iter().zip(positions.1).map(|(edge, t)| GraphPosition { edge: *edge, t: *t });
+        let at = positions.0.iter().zip(positions.1).map(|(edge, t)| graph.position_of(*edge, *t));
         // Trackers of skills trained together get the tracking reward beside the others.
         let together = config.reward.tracking_share > 0.0;
         let tracking = if together { 0.0 } else { config.reward.tracking_weight };

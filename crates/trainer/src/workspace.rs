@@ -102,7 +102,7 @@ impl Workspace {
     ///
     /// # Errors
     /// When a checkpoint is there and can't be read.
-    pub fn newest(&self, skill: &str) -> Result<Option<(Checkpoint, PathBuf)>, CheckpointError> {
+    pub fn newest(&self, skill: &str) -> Result<Option<CheckpointFile>, CheckpointError> {
         newest_or_kept(&self.runs, &self.kept, skill)
     }
 
@@ -189,6 +189,9 @@ impl Workspace {
     }
 }
 
+/// A checkpoint and its file.
+pub type CheckpointFile = (Checkpoint, PathBuf);
+
 /// The newest checkpoint of a skill's run in the folder `runs`, else the one in the folder `kept`.
 ///
 /// # Errors
@@ -197,7 +200,7 @@ pub fn newest_or_kept(
     runs: &Path,
     kept: &Path,
     skill: &str,
-) -> Result<Option<(Checkpoint, PathBuf)>, CheckpointError> {
+) -> Result<Option<CheckpointFile>, CheckpointError> {
     if let Some(Loaded { checkpoint, path, .. }) = newest_checkpoint(&runs.join(skill))? {
         return Ok(Some((checkpoint, path)));
     }

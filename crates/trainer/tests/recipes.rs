@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use physics_bridge::Model;
-use policy_core::{Arithmetic, BODY_NAMES, CharacterPack, DOF_COUNT, MlpScratch, POLICY_INPUT_LEN};
+use policy_core::{Arithmetic, CharacterPack, MlpScratch, Skeleton};
 use trainer::checkpoint::Checkpoint;
 use trainer::clip::ClipFolder;
 use trainer::env::Normalisers;
@@ -30,7 +30,7 @@ fn write_clip(folder: &Path, name: &str) {
         all
     };
     let text = serde_json::json!({
-        "loop": "wrap", "bodies": BODY_NAMES, "times": (0..frames).map(time).collect::<Vec<_>>(),
+        "loop": "wrap", "bodies": Skeleton::humanoid().bodies().iter().map(|b| b.name.clone()).collect::<Vec<_>>(), "times": (0..frames).map(time).collect::<Vec<_>>(),
         "root_pos": (0..frames).map(|i| [0.5 * time(i), 0.0, 0.9]).collect::<Vec<_>>(),
         "local_rot": (0..frames).map(rotations).collect::<Vec<_>>(),
     });
@@ -122,14 +122,14 @@ fn every_recipe_runs_and_binds_into_a_pack() {
     slim_checkpoints_are_enough_to_continue(&workspace, folder.path());
 
     let plan = PackPlan::load(&project().join("assets/recipes/pack/humanoid.toml")).unwrap();
-    let bytes = bind(&plan, &skills, &normalisers, &model).unwrap().to_bytes();
+    let bytes = bind(&plan, &skills, &normalisers, &model, None).unwrap().to_bytes();
     let pack = Arc::new(CharacterPack::from_bytes(&bytes).unwrap());
     assert_eq!(pack.policies().len(), plan.policies.len());
     the_pack_acts_as_the_trainer(&pack, &skills);
 
     let partial = plan.only(|skill| skill != "jog");
     assert!(partial.paths.iter().find(|p| p.name == "speed").is_some_and(|p| p.nodes == ["idle", "walk"]));
-    bind(&partial, &skills, &normalisers, &model).unwrap();
+    bind(&partial, &skills, &normalisers, &model, None).unwrap();
 }
 
 /// The slim checkpoints of the joint run and of the skill that hands over are enough to continue both, and to train a child.
@@ -242,12 +242,12 @@ fn trackers_track_the_clips_of_the_nodes_they_rest_at() {
 }
 
 fn the_pack_acts_as_the_trainer(pack: &CharacterPack, skills: &[TrainedSkill]) {
-    let input: Vec<f32> = (0..POLICY_INPUT_LEN).map(|i| (i as f32 * 0.7).sin()).collect();
+    let input: Vec<f32> = (0..225).map(|i| (i as f32 * 0.7).sin()).collect();
     for (node, policy) in pack.graph().nodes().iter().zip(pack.policies()) {
         let network = &skills.iter().find(|i| i.skill == node.name).unwrap().actor;
         let mut pass = Pass::new(network.sizes(), 1);
         pass.forward(network, None, &input);
-        let mut action = [0.0; DOF_COUNT];
+        let mut action = [0.0; 28];
         policy.evaluate_into(Arithmetic::Reproducible, &input, &mut MlpScratch::for_mlp(policy), &mut action);
         let worst = action.iter().zip(pass.output(1)).map(|(a, b)| (a - b).abs()).fold(0.0, f32::max);
         assert!(worst < 1e-5, "{}: {worst}", node.name);

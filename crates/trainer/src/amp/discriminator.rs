@@ -1,6 +1,5 @@
 //! A discriminator that learns beside the policy, and the style reward it gives.
 
-use policy_core::DISCRIMINATOR_INPUT_LEN;
 use rayon::prelude::*;
 
 use super::config::{DiscriminatorConfig, GRADIENT_PENALTY, LEARNING_RATE, REPLAY_ROWS, WEIGHT_DECAY};
@@ -43,7 +42,7 @@ const LANES: usize = 2;
 pub struct DiscriminatorLearner {
     /// Hyper-parameters.
     pub config: DiscriminatorConfig,
-    /// The network: 625 normalised inputs, one logit.
+    /// The network: normalised inputs, one logit.
     pub network: Network,
     /// Its optimiser.
     pub adam: Adam,
@@ -56,26 +55,33 @@ pub struct DiscriminatorLearner {
 }
 
 impl DiscriminatorLearner {
-    /// A learner that starts from `network`, or from random parameters.
+    /// A learner that starts from `network`, or from random parameters for so many inputs.
     #[must_use]
-    pub fn new(config: DiscriminatorConfig, network: Option<Network>, seed: u64, stream: u64) -> Self {
+    pub fn new(
+        config: DiscriminatorConfig,
+        inputs: usize,
+        network: Option<Network>,
+        seed: u64,
+        stream: u64,
+    ) -> Self {
         let mut rng = Rng::new(seed, stream);
         let network = network.unwrap_or_else(|| {
-            let mut sizes = vec![DISCRIMINATOR_INPUT_LEN];
+            let mut sizes = vec![inputs];
             sizes.extend_from_slice(&config.hidden);
             sizes.push(1);
             Network::new(&sizes, 1.0, &mut rng)
         });
+        let inputs = network.inputs();
         let rows = config.batch.div_ceil(LANES);
         let lane = Lane {
             pass: DiscriminatorPass::new(network.sizes(), rows),
-            input: vec![0.0; 2 * rows * DISCRIMINATOR_INPUT_LEN],
+            input: vec![0.0; 2 * rows * inputs],
             gradient: vec![0.0; network.parameters.len()],
             loss: DiscriminatorLoss::default(),
         };
         Self {
             adam: Adam::new(network.parameters.len()),
-            replay: Replay::new(config.replay_size),
+            replay: Replay::new(config.replay_size, inputs),
             noise: NoiseTable::new(seed),
             lanes: vec![lane; LANES],
             batch: BatchEvaluator::new(network.sizes()),
@@ -99,14 +105,15 @@ impl DiscriminatorLearner {
         inputs: &[f32],
         chosen: &[u32],
     ) -> DiscriminatorReport {
+        let width = self.network.inputs();
         let row_of = |row: u32| {
-            let at = row as usize * DISCRIMINATOR_INPUT_LEN;
-            &inputs[at..at + DISCRIMINATOR_INPUT_LEN]
+            let at = row as usize * width;
+            &inputs[at..at + width]
         };
         if !chosen.is_empty() {
             for _ in 0..REPLAY_ROWS {
                 let row = row_of(chosen[self.rng.index(chosen.len())]);
-                self.replay.push(row.try_into().expect("a row of this length"));
+                self.replay.push(row);
             }
         }
         let mut report = DiscriminatorReport::default();
@@ -117,12 +124,12 @@ impl DiscriminatorLearner {
         let scale = 1.0 / (per_lane * LANES) as f32;
         for _ in 0..self.config.updates {
             for lane in &mut self.lanes {
-                let (real, simulated) = lane.input.split_at_mut(per_lane * DISCRIMINATOR_INPUT_LEN);
-                for row in real.chunks_exact_mut(DISCRIMINATOR_INPUT_LEN) {
-                    demonstrations.sample_into(&mut self.rng, row.try_into().expect("a row of this length"));
+                let (real, simulated) = lane.input.split_at_mut(per_lane * width);
+                for row in real.chunks_exact_mut(width) {
+                    demonstrations.sample_into(&mut self.rng, row);
                     self.noise.add(&mut self.rng, self.config.noise_std, row);
                 }
-                for (i, row) in simulated.chunks_exact_mut(DISCRIMINATOR_INPUT_LEN).enumerate() {
+                for (i, row) in simulated.chunks_exact_mut(width).enumerate() {
                     let fresh = i % 2 == 0 && !chosen.is_empty();
                     let from = if fresh {
                         row_of(chosen[self.rng.index(chosen.len())])

@@ -47,7 +47,7 @@ pub(crate) fn run(
     let ours = Normalisers::from_clips(&clips, model)?;
     say(format_args!("{} clips: {}", clips.len(), names.into_iter().collect::<Vec<_>>().join(", ")))?;
     if let Some(other) = &arguments.compare {
-        let other = normaliser_file::load(other)?;
+        let other = normaliser_file::load(other, model.skeleton())?;
         for (name, a, b) in
             [("observation", &ours.observation, &other.observation), ("frame", &ours.frame, &other.frame)]
         {

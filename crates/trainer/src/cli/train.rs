@@ -58,7 +58,7 @@ pub(crate) fn run(workspace: &Workspace, arguments: &Arguments) -> Result<ExitCo
     };
     let mut stopped = None;
     let mut step = |run: &mut Run| -> Result<bool> {
-        run.notes.iter().for_each(|note| complain(note));
+        run.notes.iter().for_each(complain);
         train(run, arguments.iterations, &interrupt)?;
         stopped = interrupt.caught().map(|signal| {
             complain(&how_to_continue(run, signal, arguments));

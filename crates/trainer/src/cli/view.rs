@@ -44,7 +44,7 @@ pub(crate) fn run(model: &Model, folder: impl Fn() -> Result<ClipFolder>, a: &Ar
     let file = PathBuf::from(&a.clip);
     let clip = if file.is_file() { load_file(&file)? } else { folder()?.load(&a.clip)? };
     let fitted = fit(&clip, model)?;
-    let (radians, joint) = fitted.motion.outside_limits;
+    let (radians, joint) = &fitted.motion.outside_limits;
     let lowest = fitted.clearances.iter().copied().fold(f32::INFINITY, f32::min);
     say(format_args!(
         "{}: {:.2} s, {}, {:.2} m/s, lifted by {:.3} m, then {:.3} m in the ground at worst; \

@@ -115,7 +115,7 @@ fn leaving_a_low_gait_requires_standing_first() {
         command.advance(&config, &graph, Vec2::ZERO, UP, &mut rng);
     }
     let mut held = 0.0_f32;
-    for _ in 0..60 {
+    for _ in 0..400 {
         command.advance(&config, &graph, Vec2::ZERO, LOW, &mut rng);
         held = held.max(command.fall.rising_seconds());
     }

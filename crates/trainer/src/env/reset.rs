@@ -207,7 +207,7 @@ impl Env {
             self.rng.range(-1.6, 1.6),
             self.rng.angle(),
         );
-        pose.qpos[2] = 0.7
+        pose.qpos[2] = f64::from(DROP_SHARE * context.config.reward.standing_root_metres)
             + f64::from(
                 self.character
                     .model()

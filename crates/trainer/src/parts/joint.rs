@@ -3,9 +3,9 @@
 use std::sync::Arc;
 
 use anyhow::{Context, Result, ensure};
-use policy_core::{Controller, ControllerConfig, POLICY_INPUT_LEN};
+use policy_core::{Controller, ControllerConfig, SkillId};
 
-use super::{critic_sizes, heights};
+use super::{bodies, critic_sizes};
 use crate::Rng;
 use crate::amp::DiscriminatorLearner;
 use crate::env::{Demonstrations, GraphNode, HandOver, TrainingGraph};
@@ -30,6 +30,8 @@ impl Workspace {
             }
         }
         let index = |name: &String| names.iter().position(|n| *n == name);
+        let skeleton = self.model.skeleton();
+        let scored = skeleton.discriminator_input_len();
         let (mut nodes, mut actors, mut root) = (Vec::new(), Vec::new(), None);
         let mut scorers: Vec<NodeDiscriminator> = Vec::new();
         for (i, name) in names.iter().enumerate() {
@@ -40,9 +42,8 @@ impl Workspace {
             nodes.push(GraphNode { task, root_metres, ..node });
             let parent = skill.recipe.parent.as_ref().and_then(index);
             actors.push(Actor::learning(skill.actor, parent));
-            let known = Some(skill.discriminator);
-            let learner =
-                DiscriminatorLearner::new(recipe.first().discriminator.clone(), known, seed, 10 + i as u64);
+            let (config, known) = (recipe.first().discriminator.clone(), Some(skill.discriminator));
+            let learner = DiscriminatorLearner::new(config, scored, known, seed, 10 + i as u64);
             scorers.push(NodeDiscriminator {
                 demonstrations: skill.demonstrations,
                 discriminator: Some(learner),
@@ -51,43 +52,48 @@ impl Workspace {
                 root = Some(skill.critic);
             }
         }
-        let paths = recipe.paths.iter().map(|p| p.iter().filter_map(index).collect()).collect();
-        let graph = TrainingGraph::new(nodes, paths);
+        let paths: Vec<Vec<usize>> =
+            recipe.paths.iter().map(|p| p.iter().filter_map(index).collect()).collect();
+        let factors = recipe.last().environment.command.edge_secs_factors;
+        let graph = TrainingGraph::along(nodes, &paths, factors)?;
         let mut halfway = Vec::new();
         for ends in &recipe.halfway {
             let edge = ends.each_ref().map(index);
-            let edge = graph.edges().iter().position(|e| e.map(Some) == edge);
+            let edge = graph.pairs().iter().position(|e| e.map(Some) == edge);
             let edge = edge.with_context(|| {
                 format!("expected an edge of the paths in halfway, found {} to {}", ends[0], ends[1])
             })?;
             halfway.push(edge);
-            let known = scorers[graph.edges()[edge][1]].discriminator.as_ref().map(|d| d.network.clone());
+            let known = scorers[graph.pairs()[edge][1]].discriminator.as_ref().map(|d| d.network.clone());
             let seed = seed.wrapping_add(halfway.len() as u64);
-            let learner = DiscriminatorLearner::new(recipe.first().discriminator.clone(), known, seed, 30);
+            let learner =
+                DiscriminatorLearner::new(recipe.first().discriminator.clone(), scored, known, seed, 30);
             scorers.push(NodeDiscriminator {
                 demonstrations: self.halfway_clip(ends)?,
                 discriminator: Some(learner),
             });
         }
-        let sizes = critic_sizes(recipe, graph.context_len());
+        let sizes = critic_sizes(skeleton, recipe, graph.context_len());
         let mut rng = Rng::new(seed, 1);
         let critic = match root {
             Some(root) if root.sizes() == sizes => root,
-            Some(root) if root.inputs() == POLICY_INPUT_LEN + 1 && root.sizes()[1..] == sizes[1..] => {
+            Some(root)
+                if root.inputs() == skeleton.policy_input_len() + 1 && root.sizes()[1..] == sizes[1..] =>
+            {
                 widened(&root, &graph)
             }
             _ => Network::new(&sizes, 0.1, &mut rng),
         };
         ensure!(critic.sizes() == sizes, "expected a critic of sizes {sizes:?}, found {:?}", critic.sizes());
-        let learner = Learner::new(recipe.first().ppo.clone(), actors, graph.edges().to_vec(), critic, rng);
+        let learner = Learner::new(recipe.first().ppo.clone(), actors, graph.pairs().to_vec(), critic, rng);
         let start_demonstrations = self.start_clips(recipe)?;
         let hand_over = match &recipe.first().environment.reset.hand_over {
             Some(hand_over) => Some(self.hand_over(&hand_over.skill, &graph)?),
             None => None,
         };
         let discriminators = Discriminators::new(scorers, halfway);
-        let heights = heights(recipe)?;
-        Ok(Parts { graph, learner, discriminators, start_demonstrations, hand_over, heights })
+        let (heights, pushed) = bodies(recipe, skeleton)?;
+        Ok(Parts { graph, learner, discriminators, start_demonstrations, hand_over, heights, pushed })
     }
 
     /// An episodic skill of the pack's plan, ready to raise dropped characters.
@@ -110,9 +116,10 @@ impl Workspace {
             })?;
             trained.push(TrainedSkill::from_checkpoint(&policy.name, &checkpoint, &path)?);
         }
-        let pack = Arc::new(bind(&plan, &trained, &self.normalisers, &self.model)?);
-        let config = ControllerConfig { recover: false, ..ControllerConfig::default() };
-        Ok(HandOver { controller: Controller::with_config(pack, config), skill: 0, node })
+        let pack = Arc::new(bind(&plan, &trained, &self.normalisers, &self.model, None)?);
+        let config =
+            ControllerConfig { auto_recover: false, assist_rise: false, ..ControllerConfig::default() };
+        Ok(HandOver { controller: Controller::with_config(pack, config), skill: SkillId::new(0), node })
     }
 
     /// The faster skill's first clip, half-way to a pose of the slower one's.
@@ -130,10 +137,11 @@ impl Workspace {
 /// weight does what the one did; where the position is going does nothing yet.
 fn widened(critic: &Network, graph: &TrainingGraph) -> Network {
     let mut sizes = critic.sizes().to_vec();
-    sizes[0] = POLICY_INPUT_LEN + graph.context_len();
+    let inputs = critic.inputs() - 1;
+    sizes[0] = inputs + graph.context_len();
     let mut wide = Network::zeros(&sizes);
     let (from, to) = (critic.layers(), wide.layers());
-    let policy = POLICY_INPUT_LEN * from[0].outputs;
+    let policy = inputs * from[0].outputs;
     let old = &critic.parameters[from[0].weight.clone()];
     let new = &mut wide.parameters[to[0].weight.clone()];
     new[..policy].copy_from_slice(&old[..policy]);
@@ -153,11 +161,12 @@ mod tests {
     #[test]
     fn a_widened_critic_says_what_it_said() {
         let mut rng = Rng::new(1, 0);
-        let critic = Network::new(&[POLICY_INPUT_LEN + 1, 8, 1], 1.0, &mut rng);
+        let critic = Network::new(&[226, 8, 1], 1.0, &mut rng);
         let node = |name: &str| GraphNode::new(name, &EnvironmentConfig::default(), 1.0);
-        let graph = TrainingGraph::new(["a", "b", "c"].map(node).to_vec(), vec![vec![0, 1, 2]]);
+        let graph =
+            TrainingGraph::along(["a", "b", "c"].map(node).to_vec(), &[vec![0, 1, 2]], [1.0; 2]).unwrap();
         let wide = widened(&critic, &graph);
-        let mut input: Vec<f32> = (0..POLICY_INPUT_LEN).map(|_| rng.normal()).collect();
+        let mut input: Vec<f32> = (0..225).map(|_| rng.normal()).collect();
         let mut of_wide = input.clone();
         input.push(1.0);
         of_wide.extend_from_slice(&[0.25, 0.0, 0.75, 1.5, -2.0, 1.0]);
