@@ -7,7 +7,7 @@ use std::sync::Arc;
 use anyhow::{Context, Result};
 use clap::Args;
 use physics_bridge::Model;
-use policy_core::{CharacterPack, CharacterState};
+use policy_core::{CharacterPack, CharacterState, ControllerConfig, TurnAssist};
 use trainer::clip::ClipFolder;
 use trainer::evaluate::{Effort, Progress, Section, clip_states, evaluate, plots, table};
 use trainer::recipe::Recipe;
@@ -30,6 +30,18 @@ pub(crate) struct Arguments {
     /// Measure these sections alone, separated by commas.
     #[arg(long, value_delimiter = ',', value_parser = section)]
     only: Vec<Section>,
+    /// Let the player's controller slow down to turn.
+    #[arg(long)]
+    turn_assist: bool,
+    /// Seconds in which the player's controller passes from the joint targets before a skill to those of the skill.
+    #[arg(long, default_value_t = 0.0, value_parser = seconds)]
+    handover_secs: f32,
+}
+
+/// A time that a controller takes.
+fn seconds(text: &str) -> Result<f32, String> {
+    let secs = text.parse::<f32>().ok().filter(|secs| (0.0..=10.0).contains(secs));
+    secs.ok_or_else(|| "expected seconds from 0 to 10".into())
 }
 
 /// The section of a name.
@@ -54,8 +66,11 @@ pub(crate) fn run(
         Some(clips) => states_of_clips(model, recipes, clips, &pack)?,
         None => BTreeMap::new(),
     };
+    let turn_assist = arguments.turn_assist.then(TurnAssist::default);
+    let handover_secs = arguments.handover_secs;
+    let config = ControllerConfig { turn_assist, handover_secs, ..ControllerConfig::default() };
     let progress = Progress::bar();
-    let evaluation = evaluate(model, &Arc::new(pack), &effort, sections, &states, &progress)?;
+    let evaluation = evaluate(model, &Arc::new(pack), config, (&effort, sections), &states, &progress)?;
     progress.finish();
     if let Some(svg) = &arguments.plots {
         plots::draw(&evaluation.player, svg).with_context(|| format!("cannot draw {}", svg.display()))?;

@@ -3,7 +3,8 @@
 use std::sync::Arc;
 
 use physics_bridge::Model;
-use policy_core::{BlendMode, CharacterPack, Goal, Heading, TARGET_RANGE_METRES};
+use policy_core::training::TARGET_RANGE_METRES;
+use policy_core::{BlendMode, CharacterPack, Goal, Heading, PathId};
 use rayon::prelude::*;
 
 use super::report::ModeReport;
@@ -30,17 +31,18 @@ pub struct Walked {
 fn walk(
     model: &Model,
     pack: &Arc<CharacterPack>,
-    path: usize,
+    path: PathId,
     mode: BlendMode,
     coordinate: Option<f32>,
     (secs, seed): (f32, u64),
 ) -> Walked {
     let graph = pack.graph();
-    let nodes = &graph.paths()[path];
+    let nodes = graph.path(path);
     // The second node of a path is where a full stick and free triggers are: Walk.
-    let start = &graph.nodes()[nodes.nodes[1]].name;
+    let start = &graph.node(nodes.nodes()[1]).name;
     let mut subject = Subject::new(model, pack, start);
-    let mut player = Wanderer::new(Rng::new(seed, 7), path, nodes.end(), mode, coordinate);
+    subject.controller.set_blend_mode(mode);
+    let mut player = Wanderer::new(Rng::new(seed, 7), path, nodes.end(), coordinate);
     let mut walked = Walked::default();
     let (mut along, mut ticks) = (0.0, 0);
     let mut settled = 0.0;
@@ -75,7 +77,7 @@ fn walk(
 pub fn measure_sweep(
     model: &Model,
     pack: &Arc<CharacterPack>,
-    path: usize,
+    path: PathId,
     mode: BlendMode,
     (characters, secs): (usize, f32),
 ) -> ModeReport {
@@ -92,7 +94,7 @@ pub fn measure_sweep(
 pub fn measure_coordinates(
     model: &Model,
     pack: &Arc<CharacterPack>,
-    path: usize,
+    path: PathId,
     mode: BlendMode,
     coordinate: f32,
     (characters, secs): (usize, f32),

@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 
 use physics_bridge::ModelError;
-use policy_core::Body;
+use policy_core::{PathId, SkillId};
 use serde::Serialize;
 
 use super::legs::{LegReport, measure_legs};
@@ -126,8 +126,10 @@ impl PlayerReport {
             Section::Terrain => self.terrain = measure_terrain(rig)?,
             Section::Robustness => self.robustness = measure_robustness(rig)?,
             Section::Pushes => {
-                self.push_torso = measure_pushes(rig, Body::Torso);
-                self.push_pelvis = measure_pushes(rig, Body::Pelvis);
+                let skeleton = rig.pack.skeleton();
+                let torso = skeleton.body_named("torso");
+                self.push_torso = torso.map(|torso| measure_pushes(rig, torso)).unwrap_or_default();
+                self.push_pelvis = measure_pushes(rig, skeleton.root());
             }
             _ => {}
         }
@@ -137,17 +139,17 @@ impl PlayerReport {
     fn measure_straight(&mut self, rig: &Rig<'_>) {
         for (index, path) in rig.pack.graph().paths().iter().enumerate() {
             let points: Vec<StraightPoint> = coordinates(path.end(), STRAIGHT_COORDINATES)
-                .map(|coordinate| measure_straight(rig, index, coordinate))
+                .map(|coordinate| measure_straight(rig, PathId::new(index), coordinate))
                 .collect();
             let drifts = points.iter().map(|point| point.drift_degrees).collect();
-            self.drift_degrees.insert(path.name.clone(), drifts);
-            self.straight.insert(path.name.clone(), points);
+            self.drift_degrees.insert(path.name().into(), drifts);
+            self.straight.insert(path.name().into(), points);
         }
     }
 
     fn measure_buttons(&mut self, rig: &Rig<'_>) {
         self.button_presses = measure_buttons(rig);
-        let of_roll = |skill: &Option<usize>| skill.is_some() && *skill == rig.pack.skill_named("roll");
+        let of_roll = |skill: &Option<SkillId>| skill.is_some() && *skill == rig.pack.skill_named("roll");
         let button = bound_buttons(rig.pack).into_iter().find(|(_, skill)| of_roll(skill));
         let presses = self.button_presses.get("idle").zip(button);
         self.roll_from_stand =

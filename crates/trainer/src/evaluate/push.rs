@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use glam::Vec3;
 use physics_bridge::Model;
-use policy_core::{Body, CharacterPack};
+use policy_core::{CharacterPack, NodeId};
 use rayon::prelude::*;
 
 use super::subject::{SETTLE_SECS, Subject};
@@ -20,7 +20,7 @@ const MOST_NEWTON: f32 = 2000.0;
 pub fn measure_push(
     model: &Model,
     pack: &Arc<CharacterPack>,
-    node: usize,
+    node: NodeId,
     direction: Vec3,
     characters: usize,
 ) -> f32 {
@@ -42,13 +42,16 @@ pub fn measure_push(
     low
 }
 
-fn stays_up(model: &Model, pack: &Arc<CharacterPack>, node: usize, force: Vec3, seed: u64) -> bool {
+fn stays_up(model: &Model, pack: &Arc<CharacterPack>, node: NodeId, force: Vec3, seed: u64) -> bool {
     let mut subject = Subject::at(model, pack, node);
     let mut rng = Rng::new(seed, 9);
     let before = ((SETTLE_SECS + rng.range(0.0, 1.0)) / DT_SECS) as u32;
     for tick in 0..before + (3.0 / DT_SECS) as u32 {
         if tick == before {
-            subject.character.push(Body::Pelvis, force, PUSH_SECS).expect("forces tried are within bounds");
+            subject
+                .character
+                .push(pack.skeleton().root(), force, PUSH_SECS)
+                .expect("forces tried are within bounds");
         }
         let command = subject.ahead(node);
         if !subject.tick(&command) || subject.controller.report().fallen {

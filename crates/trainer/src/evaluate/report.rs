@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use glam::Vec3;
 use physics_bridge::{GroundKind, Model, ModelError};
-use policy_core::{BlendMode, CharacterPack, CharacterState};
+use policy_core::{BlendMode, CharacterPack, CharacterState, ControllerConfig, NodeId, PathId, SkillId};
 use serde::Serialize;
 
 use super::{
@@ -104,7 +104,7 @@ pub struct PushReport {
     pub sideways_newton: f32,
 }
 
-/// Measures some sections and tells the progress. `clips` holds the states of each skill's clips, see
+/// Measures some sections and tells the progress. What a player feels is measured with `config`. `clips` holds the states of each skill's clips, see
 /// [`clip_states`](super::clip_states); without them there is no pose error.
 ///
 /// # Errors
@@ -112,8 +112,8 @@ pub struct PushReport {
 pub fn evaluate(
     model: &Model,
     pack: &Arc<CharacterPack>,
-    effort: &Effort,
-    sections: &[Section],
+    config: ControllerConfig,
+    (effort, sections): (&Effort, &[Section]),
     clips: &BTreeMap<String, Vec<CharacterState>>,
     progress: &Progress,
 ) -> Result<Evaluation, ModelError> {
@@ -121,11 +121,11 @@ pub fn evaluate(
     let graph = pack.graph();
     for edge in graph.edges() {
         let [a, b] = edge.nodes;
-        let name = format!("{}-{}", graph.nodes()[a].name, graph.nodes()[b].name);
-        let distance = pack.policies()[a].squared_distance(&pack.policies()[b]);
+        let name = format!("{}-{}", graph.node(a).name, graph.node(b).name);
+        let distance = pack.policies()[a.index()].squared_distance(&pack.policies()[b.index()]);
         evaluation.parameter_distance.insert(name, distance);
     }
-    let rig = Rig::new(model, pack, *effort, progress.clone());
+    let rig = Rig::new(model, pack, config, *effort, progress.clone());
     progress.set_length(sections.iter().map(|section| effort.nominal_secs(*section, pack)).sum());
     let mut begun = 0.0;
     for section in sections {
@@ -156,7 +156,7 @@ impl Evaluation {
             grounds.push((kind.name(), model.with_terrain(kind.terrain(HILLS_SEED))?));
         }
         for (index, path) in pack.graph().paths().iter().enumerate() {
-            let mut report = PathReport::default();
+            let (index, mut report) = (PathId::new(index), PathReport::default());
             for mode in BlendMode::ALL {
                 let swept = measure_sweep(model, pack, index, mode, (effort.characters, effort.secs));
                 report.modes.insert(mode.name().into(), swept);
@@ -177,7 +177,7 @@ impl Evaluation {
                     falls_per_character_minute: falls,
                 });
             }
-            self.paths.insert(path.name.clone(), report);
+            self.paths.insert(path.name().into(), report);
         }
         Ok(())
     }
@@ -185,7 +185,7 @@ impl Evaluation {
     fn measure_upright(&mut self, model: &Model, pack: &Arc<CharacterPack>, effort: &Effort) {
         for (index, node) in pack.graph().nodes().iter().enumerate().filter(|(_, n)| n.fall_height.is_some())
         {
-            let upright = measure_upright(model, pack, index, effort.characters);
+            let upright = measure_upright(model, pack, NodeId::new(index), effort.characters);
             self.upright.insert(node.name.clone(), upright);
         }
     }
@@ -193,7 +193,7 @@ impl Evaluation {
     fn measure_push(&mut self, model: &Model, pack: &Arc<CharacterPack>, effort: &Effort) {
         for (index, node) in pack.graph().nodes().iter().enumerate().filter(|(_, n)| n.fall_height.is_some())
         {
-            let push = |direction| measure_push(model, pack, index, direction, effort.pushed);
+            let push = |direction| measure_push(model, pack, NodeId::new(index), direction, effort.pushed);
             let report = PushReport { forward_newton: push(Vec3::X), sideways_newton: push(Vec3::Y) };
             self.push.insert(node.name.clone(), report);
         }
@@ -206,14 +206,14 @@ impl Evaluation {
         clips: &BTreeMap<String, Vec<CharacterState>>,
     ) {
         for (index, node) in pack.graph().nodes().iter().enumerate().filter(|(_, n)| n.speed_mps.is_some()) {
-            let states = watch(model, pack, index);
+            let states = watch(model, pack, NodeId::new(index));
             if states.is_empty() {
                 continue;
             }
-            self.motion.insert(node.name.clone(), MotionReport::of(&states));
+            self.motion.insert(node.name.clone(), MotionReport::of(pack.skeleton(), &states));
             if let Some(clip) = clips.get(&node.name) {
                 self.pose_error_m.insert(node.name.clone(), pose_error(&states, clip));
-                self.clip_motion.insert(node.name.clone(), MotionReport::of(clip));
+                self.clip_motion.insert(node.name.clone(), MotionReport::of(pack.skeleton(), clip));
             }
         }
     }
@@ -223,7 +223,7 @@ impl Evaluation {
         for [a, b] in graph.edges().iter().map(|e| e.nodes) {
             for (from, to) in [(a, b), (b, a)] {
                 let measured = measure_layers(model, pack, (from, to), effort.layered);
-                let name = format!("{}-{}", graph.nodes()[from].name, graph.nodes()[to].name);
+                let name = format!("{}-{}", graph.node(from).name, graph.node(to).name);
                 self.layers.insert(name, measured);
             }
         }
@@ -233,8 +233,9 @@ impl Evaluation {
 
     fn measure_skills(&mut self, model: &Model, pack: &Arc<CharacterPack>, effort: &Effort) {
         self.getup = measure_get_up(model, pack, "get_up", effort.drops);
-        for (index, skill) in pack.skills().iter().enumerate().filter(|(i, _)| pack.recovery() != Some(*i)) {
-            let report = measure_skill(model, pack, index, effort.drops);
+        let skills = pack.skills().iter().enumerate().map(|(index, skill)| (SkillId::new(index), skill));
+        for (id, skill) in skills.filter(|(id, _)| pack.recovery() != Some(*id)) {
+            let report = measure_skill(model, pack, id, effort.drops);
             self.skills.insert(skill.name.clone(), report);
         }
         self.roll = self.skills.get("roll").copied();

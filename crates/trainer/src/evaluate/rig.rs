@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 use std::sync::{Arc, Mutex, PoisonError};
 
 use physics_bridge::Model;
-use policy_core::CharacterPack;
+use policy_core::{CharacterPack, ControllerConfig};
 use rayon::prelude::*;
 
 use super::trial::{Gait, Settled};
@@ -17,6 +17,8 @@ pub struct Rig<'a> {
     pub model: &'a Model,
     /// The pack.
     pub pack: &'a Arc<CharacterPack>,
+    /// What the player's controller does by itself. Trials that end with a fall keep it from getting up.
+    pub config: ControllerConfig,
     /// How much is measured.
     pub effort: Effort,
     progress: Progress,
@@ -26,8 +28,20 @@ pub struct Rig<'a> {
 impl<'a> Rig<'a> {
     /// A rig in which no character has settled yet.
     #[must_use]
-    pub fn new(model: &'a Model, pack: &'a Arc<CharacterPack>, effort: Effort, progress: Progress) -> Self {
-        Self { model, pack, effort, progress, settled: Mutex::default() }
+    pub fn new(
+        model: &'a Model,
+        pack: &'a Arc<CharacterPack>,
+        config: ControllerConfig,
+        effort: Effort,
+        progress: Progress,
+    ) -> Self {
+        Self { model, pack, config, effort, progress, settled: Mutex::default() }
+    }
+
+    /// The player's controller, but one that does not get up by itself: a trial ends with a fall.
+    #[must_use]
+    pub fn fragile_config(&self) -> ControllerConfig {
+        ControllerConfig { auto_recover: false, ..self.config }
     }
 
     /// The gaits of the pack that go on for as long as the pad is held.
@@ -42,7 +56,7 @@ impl<'a> Rig<'a> {
         let mut all = self.settled.lock().unwrap_or_else(PoisonError::into_inner);
         let settle = || {
             let seeds: Vec<u64> = (0..self.effort.settled as u64).collect();
-            let settle = |seed: &u64| Settled::one(self.model, self.pack, gait, *seed);
+            let settle = |seed: &u64| Settled::one(self.model, self.pack, self.fragile_config(), gait, *seed);
             self.each(&seeds, Settled::NOMINAL_SECS, settle).into_iter().flatten().collect()
         };
         all.entry(gait.name).or_insert_with(settle).clone()

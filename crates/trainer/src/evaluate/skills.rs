@@ -3,11 +3,9 @@
 use std::sync::Arc;
 
 use glam::Vec2;
-use physics_bridge::{Model, Pose, QPOS_LEN, QVEL_LEN};
-use policy_core::{
-    Body, CharacterPack, CharacterState, Command, DOF_COUNT, Goal, JointTargets, SkillEnd,
-    TARGET_RANGE_METRES,
-};
+use physics_bridge::{Model, Pose};
+use policy_core::training::TARGET_RANGE_METRES;
+use policy_core::{CharacterPack, CharacterState, Command, Goal, JointTargets, SkillEnd, SkillId};
 use rayon::prelude::*;
 use serde::Serialize;
 
@@ -20,6 +18,9 @@ const GET_UP_SECS: f32 = 5.0;
 
 /// Seconds within which an episodic skill must be over.
 const SKILL_SECS: f32 = 3.0;
+
+/// Body whose x axis tells which way a lying character faces; the root where there is none.
+const FACING: &str = "torso";
 
 /// A share of tries that went well.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
@@ -62,7 +63,7 @@ pub fn measure_get_up(
     Some(RateReport::of(&tries))
 }
 
-fn gets_up(model: &Model, pack: &Arc<CharacterPack>, skill: usize, seed: u64) -> (bool, Option<f32>) {
+fn gets_up(model: &Model, pack: &Arc<CharacterPack>, skill: SkillId, seed: u64) -> (bool, Option<f32>) {
     let mut subject = Subject::new(model, pack, "idle");
     let mut rng = Rng::new(seed, 11);
     if !drop_limp(&mut subject, &mut rng) {
@@ -78,7 +79,7 @@ fn gets_up(model: &Model, pack: &Arc<CharacterPack>, skill: usize, seed: u64) ->
         if let Some((_, SkillEnd::Recognised)) = subject.controller.report().skill_ended {
             ended = Some(tick as f32 * DT_SECS);
         }
-        let up = subject.pelvis_height() > 0.65 && subject.state.height_of(Body::Head) > 1.1;
+        let up = subject.is_upright();
         stood = if up { stood + DT_SECS } else { 0.0 };
     }
     // Up at the end, and so since five seconds after the drop.
@@ -88,21 +89,20 @@ fn gets_up(model: &Model, pack: &Arc<CharacterPack>, skill: usize, seed: u64) ->
 /// Drops the character in a random attitude, limp, and lets it come to rest for two seconds.
 fn drop_limp(subject: &mut Subject, rng: &mut Rng) -> bool {
     let turn = glam::Quat::from_euler(glam::EulerRot::ZYX, rng.angle(), rng.range(-1.6, 1.6), rng.angle());
-    let mut pose = Pose { qpos: [0.0; QPOS_LEN], qvel: [0.0; QVEL_LEN] };
+    let skeleton = subject.character.model().skeleton().clone();
+    let mut pose = Pose::new(&skeleton);
     pose.qpos[2] = 0.8;
     pose.qpos[3..7].copy_from_slice(&[turn.w, turn.x, turn.y, turn.z].map(f64::from));
-    let (low, high) = subject.character.model().joint_limits();
-    for joint in 0..DOF_COUNT {
-        let angle = 0.5 * rng.range(low[joint], high[joint]);
-        pose.qpos[7 + joint] = f64::from(angle);
+    for (angle, joint) in pose.qpos[7..].iter_mut().zip(skeleton.joints()) {
+        *angle = f64::from(0.5 * rng.range(joint.range[0], joint.range[1]));
     }
     if subject.character.set_pose(&pose.qpos, &pose.qvel).is_err() {
         return false;
     }
+    let mut targets = JointTargets::new(&skeleton);
     for _ in 0..(2.0 / DT_SECS) as u32 {
-        let mut targets = JointTargets::default();
-        let now = subject.character.pose();
-        for (target, angle) in targets.0.iter_mut().zip(&now.qpos[7..]) {
+        subject.character.pose_into(&mut pose);
+        for (target, angle) in targets.iter_mut().zip(&pose.qpos[7..]) {
             *target = *angle as f32;
         }
         subject.character.actuate(&targets);
@@ -120,17 +120,17 @@ fn drop_limp(subject: &mut Subject, rng: &mut Rng) -> bool {
 pub fn watch_skill(
     model: &Model,
     pack: &Arc<CharacterPack>,
-    skill: usize,
+    skill: SkillId,
     on_its_face: bool,
 ) -> Vec<CharacterState> {
-    let back = pack.skills()[skill].returns_to;
-    let mut subject = Subject::new(model, pack, &pack.graph().nodes()[back].name);
+    let back = pack.skills()[skill.index()].returns_to;
+    let mut subject = Subject::new(model, pack, &pack.graph().node(back).name);
     let ahead = |subject: &Subject| Some(subject.position() + Vec2::new(TARGET_RANGE_METRES, 0.0));
     let mut command = Command { goal: Goal::Node(back), ..Command::default() };
     if pack.recovery() == Some(skill) {
-        let faces_down = |s: &Subject| (s.state.body(Body::Torso).rotation * glam::Vec3::X).z < -0.5;
-        let faces_up = |s: &Subject| (s.state.body(Body::Torso).rotation * glam::Vec3::X).z > 0.5;
-        let lies = |s: &Subject| if on_its_face { faces_down(s) } else { faces_up(s) };
+        let body = pack.skeleton().body_named(FACING).unwrap_or_else(|| pack.skeleton().root());
+        let sign = if on_its_face { -1.0 } else { 1.0 };
+        let lies = |s: &Subject| sign * (s.state.body(body).rotation * glam::Vec3::X).z > 0.5;
         let lying = (0..100).any(|seed| drop_limp(&mut subject, &mut Rng::new(seed, 11)) && lies(&subject));
         if !lying {
             return Vec::new();
@@ -142,7 +142,7 @@ pub fn watch_skill(
         }
     }
     command.skill = Some(skill);
-    let mut states = vec![subject.state];
+    let mut states = vec![subject.state.clone()];
     let mut after = 0.0;
     while after < 0.5 && states.len() < 300 {
         command.target = if pack.recovery() == Some(skill) { None } else { ahead(&subject) };
@@ -150,7 +150,7 @@ pub fn watch_skill(
             break;
         }
         command.skill = None;
-        states.push(subject.state);
+        states.push(subject.state.clone());
         after = if subject.controller.report().skill.is_some() { 0.0 } else { after + DT_SECS };
     }
     states
@@ -162,15 +162,15 @@ pub fn watch_skill(
 /// # Panics
 /// When the pack has no such skill.
 #[must_use]
-pub fn measure_skill(model: &Model, pack: &Arc<CharacterPack>, skill: usize, tries: usize) -> RateReport {
+pub fn measure_skill(model: &Model, pack: &Arc<CharacterPack>, skill: SkillId, tries: usize) -> RateReport {
     let tries: Vec<_> =
         (0..tries).into_par_iter().map(|i| comes_back(model, pack, skill, i as u64)).collect();
     RateReport::of(&tries)
 }
 
-fn comes_back(model: &Model, pack: &Arc<CharacterPack>, skill: usize, seed: u64) -> (bool, Option<f32>) {
-    let back = pack.skills()[skill].returns_to;
-    let mut subject = Subject::new(model, pack, &pack.graph().nodes()[back].name);
+fn comes_back(model: &Model, pack: &Arc<CharacterPack>, skill: SkillId, seed: u64) -> (bool, Option<f32>) {
+    let back = pack.skills()[skill.index()].returns_to;
+    let mut subject = Subject::new(model, pack, &pack.graph().node(back).name);
     let mut rng = Rng::new(seed, 13);
     let start = ((SETTLE_SECS + rng.range(0.0, 1.0)) / DT_SECS) as u32;
     let mut ended = None;

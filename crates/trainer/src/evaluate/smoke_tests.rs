@@ -4,11 +4,12 @@ use std::collections::BTreeMap;
 use std::sync::Arc;
 
 use physics_bridge::Model;
-use policy_core::{
-    BODY_NAMES, CharacterPack, DISCRIMINATOR_LAYOUT, DOF_COUNT, EdgeEntry, EndCondition, FRAME_LEN,
-    JOINT_NAMES, Layer, Manifest, Mlp, Normaliser, OBSERVATION_LAYOUT, OBSERVATION_LEN, PACK_FORMAT,
-    PACK_VERSION, POLICY_INPUT_LEN, PackTensors, PathEntry, PolicyEntry, SkillEntry,
+use policy_core::format::{
+    DISCRIMINATOR_LAYOUT, EdgeEntry, EndEntry, Manifest, OBSERVATION_LAYOUT, PACK_FORMAT, PACK_VERSION,
+    PathEntry, PolicyEntry, SkeletonEntry, SkillEntry,
 };
+use policy_core::training::{Layer, Normaliser, PackTensors};
+use policy_core::{CharacterPack, ControllerConfig, Mlp, Skeleton};
 
 use super::{Effort, Evaluation, Progress, Section, evaluate};
 
@@ -45,20 +46,22 @@ const PLAYER: [Section; 12] = [
 
 /// A pack in which lying on the ground is no fall when `falls` is false.
 fn pack(falls: bool) -> Arc<CharacterPack> {
+    let skeleton = Skeleton::humanoid();
+    let (inputs, joints) = (skeleton.policy_input_len(), skeleton.joint_count());
     let policy = |name: &str| PolicyEntry {
         name: name.into(),
-        layers: vec![POLICY_INPUT_LEN, 4, DOF_COUNT],
+        layers: vec![inputs, 4, joints],
         fall_height: falls.then_some(0.5),
         speed_mps: Some(if name == "idle" { 0.0 } else { 1.0 }),
         origin: "made up".into(),
     };
-    let edge = |a: &str, b: &str| EdgeEntry { nodes: [a.into(), b.into()], seconds: 0.1 };
+    let edge = |a: &str, b: &str| EdgeEntry { nodes: [a.into(), b.into()], seconds: 0.1, seconds_back: None };
     let path =
         |name: &str, nodes: [&str; 3]| PathEntry { name: name.into(), nodes: nodes.map(Into::into).into() };
-    let end = EndCondition {
+    let end = EndEntry {
         threshold: 0.5,
         hysteresis: 0.1,
-        ticks: 1,
+        hold_seconds: 0.0,
         minimum_seconds: 0.0,
         limit_seconds: 0.5,
         minimum_height: 0.0,
@@ -78,10 +81,13 @@ fn pack(falls: bool) -> Arc<CharacterPack> {
         control_hz: 30.0,
         observation: OBSERVATION_LAYOUT.into(),
         discriminator: DISCRIMINATOR_LAYOUT.into(),
-        bodies: BODY_NAMES.map(Into::into).into(),
-        joints: JOINT_NAMES.map(Into::into).into(),
-        action_centre: vec![0.0; DOF_COUNT],
-        action_gain: vec![1.0; DOF_COUNT],
+        checksum: None,
+        skeleton: SkeletonEntry::from(&skeleton),
+        actuation: None,
+        credits: Vec::new(),
+        mjcf: None,
+        action_centre: vec![0.0; joints],
+        action_gain: vec![1.0; joints],
         policies: NODES.map(policy).into(),
         edges: vec![edge("idle", "walk"), edge("walk", "run"), edge("walk", "crawl")],
         paths: vec![path("speed", ["idle", "walk", "run"]), path("stance", ["idle", "walk", "crawl"])],
@@ -92,21 +98,30 @@ fn pack(falls: bool) -> Arc<CharacterPack> {
     let layer = |inputs: usize, outputs: usize| {
         Layer::from_input_major(inputs, outputs, &vec![0.0; inputs * outputs], &vec![0.0; outputs]).unwrap()
     };
-    let mlp = || Mlp::from_layers(vec![layer(POLICY_INPUT_LEN, 4), layer(4, DOF_COUNT)]).unwrap();
+    let mlp = || Mlp::from_layers(vec![layer(inputs, 4), layer(4, joints)]).unwrap();
     let normaliser =
         |len: usize| Normaliser::from_mean_and_deviation(&vec![0.0; len], &vec![1.0; len]).unwrap();
     let tensors = PackTensors {
         policies: NODES.iter().map(|_| mlp()).collect(),
         discriminators: Vec::new(),
-        observation_normaliser: normaliser(OBSERVATION_LEN),
-        discriminator_normaliser: normaliser(FRAME_LEN),
+        observation_normaliser: normaliser(skeleton.observation_len()),
+        discriminator_normaliser: normaliser(skeleton.frame_len()),
+        mesh: None,
     };
     Arc::new(CharacterPack::from_parts(manifest, tensors).unwrap())
 }
 
 fn measured(falls: bool, effort: &Effort, sections: &[Section]) -> Evaluation {
     let model = Model::from_mjcf(HUMANOID).unwrap();
-    evaluate(&model, &pack(falls), effort, sections, &BTreeMap::new(), &Progress::hidden()).unwrap()
+    evaluate(
+        &model,
+        &pack(falls),
+        ControllerConfig::default(),
+        (effort, sections),
+        &BTreeMap::new(),
+        &Progress::hidden(),
+    )
+    .unwrap()
 }
 
 #[test]

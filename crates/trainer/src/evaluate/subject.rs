@@ -4,9 +4,10 @@ use std::sync::Arc;
 
 use glam::Vec2;
 use physics_bridge::{Character, Model, WALKING_START_MPS};
+use policy_core::training::{Heights, TARGET_RANGE_METRES};
 use policy_core::{
-    BlendMode, Body, CharacterPack, CharacterState, Command, Controller, ControllerConfig, Goal,
-    GraphPosition, Heading, TARGET_RANGE_METRES,
+    CharacterPack, CharacterState, Command, Controller, ControllerConfig, Goal, GraphPosition, Heading,
+    NodeId, PathId, Skeleton,
 };
 
 use crate::Rng;
@@ -33,12 +34,12 @@ impl Subject {
     /// A character that walks along x from the node called `start`, or from the first one. It does not get up by itself.
     #[must_use]
     pub fn new(model: &Model, pack: &Arc<CharacterPack>, start: &str) -> Self {
-        let start = pack.graph().node_named(start).unwrap_or(0);
-        let config = ControllerConfig { recover: false, start, ..ControllerConfig::default() };
+        let start = pack.graph().node_named(start).unwrap_or_default();
+        let config = ControllerConfig { auto_recover: false, start, ..ControllerConfig::default() };
         let mut subject = Self {
             character: Character::new(model),
             controller: Controller::with_config(pack.clone(), config),
-            state: CharacterState::default(),
+            state: CharacterState::new(pack.skeleton()),
         };
         subject.reset(Heading::FORWARD);
         subject
@@ -47,12 +48,12 @@ impl Subject {
     /// A character that acts as `node`, straight ahead: one that is on a path and moves is reached from Walk, the second node
     /// of the path, as in a game; it may have fallen on the way. Any other stands there from the start.
     #[must_use]
-    pub fn at(model: &Model, pack: &Arc<CharacterPack>, node: usize) -> Self {
+    pub fn at(model: &Model, pack: &Arc<CharacterPack>, node: NodeId) -> Self {
         let graph = pack.graph();
-        let path = graph.paths().iter().find(|p| p.nodes.len() > 1 && p.nodes.contains(&node));
-        let stands = graph.nodes()[node].speed_mps == Some(0.0);
-        let start = path.filter(|_| !stands).map_or(node, |p| p.nodes[1]);
-        let mut subject = Self::new(model, pack, &graph.nodes()[start].name);
+        let path = graph.paths().iter().find(|p| p.nodes().contains(&node));
+        let stands = graph.node(node).speed_mps == Some(0.0);
+        let start = path.filter(|_| !stands).map_or(node, |p| p.nodes()[1]);
+        let mut subject = Self::new(model, pack, &graph.node(start).name);
         for _ in 0..(REACH_SECS / DT_SECS) as u32 {
             let position = subject.controller.report().position;
             if position == GraphPosition::node(node) {
@@ -68,7 +69,7 @@ impl Subject {
     pub fn reset(&mut self, heading: Heading) {
         self.controller.reset();
         let node = self.controller.report().position.nearest_node();
-        let stands = self.controller.pack().graph().nodes()[node].speed_mps == Some(0.0);
+        let stands = self.controller.pack().graph().node(node).speed_mps == Some(0.0);
         let speed = if stands { 0.0 } else { WALKING_START_MPS };
         self.character.stand_at(0.0, 0.0, heading, speed).expect("zeros are finite");
         self.character.sense_into(&mut self.state);
@@ -76,8 +77,7 @@ impl Subject {
 
     /// One control tick. False when the physics diverged.
     pub fn tick(&mut self, command: &Command) -> bool {
-        let targets = *self.controller.tick(&self.state, command, DT_SECS);
-        self.character.actuate(&targets);
+        self.character.actuate(self.controller.tick(&self.state, command, DT_SECS));
         let sound = self.character.step().is_ok();
         self.character.sense_into(&mut self.state);
         sound
@@ -85,8 +85,8 @@ impl Subject {
 
     /// The command to go straight ahead along x as `node`; to stay, for a node that stands.
     #[must_use]
-    pub fn ahead(&self, node: usize) -> Command {
-        let stands = self.controller.pack().graph().nodes()[node].speed_mps == Some(0.0);
+    pub fn ahead(&self, node: NodeId) -> Command {
+        let stands = self.controller.pack().graph().node(node).speed_mps == Some(0.0);
         let target = self.position() + Vec2::new(TARGET_RANGE_METRES, 0.0);
         Command { target: (!stands).then_some(target), goal: Goal::Node(node), ..Command::default() }
     }
@@ -94,23 +94,34 @@ impl Subject {
     /// Horizontal place of the pelvis.
     #[must_use]
     pub fn position(&self) -> Vec2 {
-        self.state.body(Body::Pelvis).position.truncate()
+        self.state.root().position.truncate()
+    }
+
+    /// True when pelvis and head are as high as in standing.
+    #[must_use]
+    pub fn is_upright(&self) -> bool {
+        is_upright(self.controller.pack().skeleton(), &self.state)
     }
 
     /// Height of the pelvis above the ground, metres.
     #[must_use]
     pub fn pelvis_height(&self) -> f32 {
-        self.state.height_of(Body::Pelvis)
+        self.state.root_height()
     }
+}
+
+/// True when pelvis and head, if there is one, are as high as those of the humanoid in standing.
+pub(super) fn is_upright(skeleton: &Skeleton, state: &CharacterState) -> bool {
+    let heights = Heights::of(skeleton, state);
+    heights.root > 0.65 && heights.head > 1.1
 }
 
 /// A random player: new directions every 2 to 5 s, turns of up to 90 degrees, a trigger that sweeps or rests.
 #[derive(Clone, Copy, Debug)]
 pub struct Wanderer {
     rng: Rng,
-    path: usize,
+    path: PathId,
     end: f32,
-    mode: BlendMode,
     direction: f32,
     turn_in: f32,
     /// Coordinate on the path now.
@@ -122,12 +133,11 @@ pub struct Wanderer {
 impl Wanderer {
     /// A player on a path, at `coordinate` and resting there, or sweeping over the whole path when `None`.
     #[must_use]
-    pub fn new(rng: Rng, path: usize, end: f32, mode: BlendMode, coordinate: Option<f32>) -> Self {
+    pub fn new(rng: Rng, path: PathId, end: f32, coordinate: Option<f32>) -> Self {
         let mut player = Self {
             rng,
             path,
             end,
-            mode,
             direction: 0.0,
             turn_in: SETTLE_SECS,
             coordinate: coordinate.unwrap_or(1.0_f32.min(end)),
@@ -173,7 +183,6 @@ impl Wanderer {
         Command {
             target: (push > 0.0).then_some(target),
             goal: Goal::Path { path: self.path, coordinate: self.coordinate },
-            mode: self.mode,
             ..Command::default()
         }
     }

@@ -4,7 +4,8 @@ use std::sync::Arc;
 
 use glam::Vec2;
 use physics_bridge::Model;
-use policy_core::{CharacterPack, Command, Goal, TARGET_RANGE_METRES};
+use policy_core::training::TARGET_RANGE_METRES;
+use policy_core::{CharacterPack, Command, Goal, NodeId};
 use rayon::prelude::*;
 use serde::Serialize;
 
@@ -30,7 +31,7 @@ pub struct UprightReport {
 pub fn measure_upright(
     model: &Model,
     pack: &Arc<CharacterPack>,
-    node: usize,
+    node: NodeId,
     characters: usize,
 ) -> UprightReport {
     let speeds: Vec<Option<f32>> =
@@ -42,10 +43,10 @@ pub fn measure_upright(
     }
 }
 
-fn walk(model: &Model, pack: &Arc<CharacterPack>, node: usize, seed: u64) -> Option<f32> {
+fn walk(model: &Model, pack: &Arc<CharacterPack>, node: NodeId, seed: u64) -> Option<f32> {
     let graph = pack.graph();
     let mut subject = Subject::at(model, pack, node);
-    let stands = graph.nodes()[node].speed_mps == Some(0.0);
+    let stands = graph.node(node).speed_mps == Some(0.0);
     let mut rng = Rng::new(seed, 17);
     let (mut angle, mut along) = (0.0, 0.0);
     let ticks = (TEST_SECS / DT_SECS) as u32;

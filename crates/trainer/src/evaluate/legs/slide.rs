@@ -2,9 +2,8 @@
 
 use glam::Vec3;
 use physics_bridge::{Shape, ShapeKind};
-use policy_core::{Body, BodyState};
+use policy_core::{BodyId, BodyState};
 
-use super::LEGS;
 use crate::evaluate::trial::Trial;
 
 /// A foot that bears this share of the weight stands.
@@ -24,7 +23,7 @@ impl FootSlide {
     /// Takes the tick that a trial has just had.
     pub fn tick(&mut self, trial: &Trial) {
         let weight = trial.character.model().mass_kg() as f32 * GRAVITY;
-        for foot in LEGS.map(|leg| leg.foot) {
+        for &foot in trial.controller.pack().skeleton().feet() {
             if load(trial, foot) >= LEAST_LOAD * weight {
                 let shapes = trial.character.model().shapes().iter().filter(|shape| shape.body == foot);
                 self.add(lowest_point_velocity(shapes, trial.state.body(foot)));
@@ -46,7 +45,7 @@ impl FootSlide {
 }
 
 /// Vertical force of the ground on a body, newton.
-fn load(trial: &Trial, body: Body) -> f32 {
+fn load(trial: &Trial, body: BodyId) -> f32 {
     let contacts = trial.character.contacts().iter();
     contacts
         .filter(|contact| contact.body == body && contact.other.is_none())
@@ -82,7 +81,7 @@ mod tests {
     use glam::Quat;
 
     const SOLE: Shape = Shape {
-        body: Body::LeftFoot,
+        body: BodyId::new(0),
         position: Vec3::new(0.05, 0.0, 0.0),
         rotation: Quat::IDENTITY,
         kind: ShapeKind::Cuboid { half_extents: Vec3::new(0.1, 0.05, 0.03) },

@@ -2,7 +2,8 @@
 
 use std::collections::BTreeMap;
 
-use policy_core::{Bindings, Button, CharacterPack, SkillEnd};
+use policy_core::bindings::{Bindings, Control};
+use policy_core::{Button, CharacterPack, SkillEnd, SkillId};
 use serde::Serialize;
 
 use crate::evaluate::Rig;
@@ -36,17 +37,17 @@ pub struct PressReport {
     pub falls: usize,
 }
 
-/// By gait, and in it by button. The button of the style path is held for a second.
+/// By gait, and in it by button. A button of a path is held for a second.
 #[must_use]
 pub fn measure_buttons(rig: &Rig<'_>) -> BTreeMap<String, BTreeMap<String, PressReport>> {
     let measure = |gait: &_| {
         let settled = rig.settled(gait);
         let pressed = &settled[..settled.len().min(rig.effort.pressed)];
-        let report = |(button, skill): &(Button, Option<usize>)| {
+        let report = |(button, skill): &(Button, Option<SkillId>)| {
             let presses = rig.each(pressed, WATCHED_SECS, |from| press(rig, from, *button, *skill));
             let count = |which: fn(&Press) -> bool| presses.iter().filter(|press| which(press)).count();
             let report = PressReport {
-                skill: skill.map(|skill| rig.pack.skills()[skill].name.clone()),
+                skill: skill.map(|skill| rig.pack.skills()[skill.index()].name.clone()),
                 trials: presses.len(),
                 started: count(|press| press.started),
                 succeeded: count(|press| press.secs.is_some()),
@@ -62,10 +63,14 @@ pub fn measure_buttons(rig: &Rig<'_>) -> BTreeMap<String, BTreeMap<String, Press
 }
 
 /// The buttons that are bound, each with the skill that it starts, if the pack has it.
-pub(in crate::evaluate) fn bound_buttons(pack: &CharacterPack) -> Vec<(Button, Option<usize>)> {
+pub(in crate::evaluate) fn bound_buttons(pack: &CharacterPack) -> Vec<(Button, Option<SkillId>)> {
     let bindings = Bindings::default();
     let skills = bindings.skills.iter().map(|(button, name)| (*button, pack.skill_named(name)));
-    skills.chain([(bindings.style_button, None)]).collect()
+    let paths = bindings.paths.iter().filter_map(|binding| match binding.control {
+        Control::Button(button) => Some((button, None)),
+        _ => None,
+    });
+    skills.chain(paths).collect()
 }
 
 /// Name of a button for reports, such as `right_shoulder`.
@@ -91,7 +96,7 @@ struct Press {
     fell: bool,
 }
 
-fn press(rig: &Rig<'_>, from: &Settled, button: Button, skill: Option<usize>) -> Press {
+fn press(rig: &Rig<'_>, from: &Settled, button: Button, skill: Option<SkillId>) -> Press {
     let mut trial = from.resume(rig.model);
     let held = trial.pad.buttons;
     trial.pad.buttons = held.with(button);

@@ -54,15 +54,15 @@ fn watch(rig: &Rig<'_>, from: &Settled, pressed: Buttons) -> Jumps {
     let mut trial = from.resume(rig.model);
     let mut jumps = Jumps::default();
     trial.pad.buttons = pressed;
-    let mut before = *trial.controller.joint_targets();
+    let mut before = trial.controller.joint_targets().to_vec();
     for _ in 0..ticks(WATCHED_SECS) {
         if !trial.tick() {
             break;
         }
         trial.pad.buttons = Buttons::NONE;
         let now = trial.controller.joint_targets();
-        let jump = largest_change(&before.0, &now.0);
-        before = *now;
+        let jump = largest_change(&before, now);
+        before.copy_from_slice(now);
         let report = trial.controller.report();
         match (report.skill_started, report.skill_ended) {
             (Some(_), _) => jumps.start.push(jump),

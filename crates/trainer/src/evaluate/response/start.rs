@@ -1,6 +1,5 @@
 //! Starts: how long from standing until the character moves.
 
-use policy_core::Body;
 use serde::Serialize;
 
 use crate::evaluate::Rig;
@@ -74,9 +73,12 @@ fn start(rig: &Rig<'_>, from: &Settled, trigger: f32, speed_mps: f32) -> Start {
             break;
         }
         let secs = tick as f32 * TICK_SECS;
-        let foot_up = [Body::LeftFoot, Body::RightFoot]
-            .into_iter()
-            .any(|foot| trial.character.clearance_of(foot) > OFF_GROUND_METRES);
+        let foot_up = rig
+            .pack
+            .skeleton()
+            .feet()
+            .iter()
+            .any(|foot| trial.character.clearance_of(*foot) > OFF_GROUND_METRES);
         if foot_up {
             step = step.or(Some(secs));
         }

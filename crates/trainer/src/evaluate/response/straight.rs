@@ -1,7 +1,7 @@
 //! Straight ahead at the coordinates of a path: how fast, and how far off the asked direction.
 
 use glam::Vec2;
-use policy_core::{CharacterPack, Goal};
+use policy_core::{CharacterPack, Goal, NodeId, PathId};
 use serde::Serialize;
 
 use crate::Rng;
@@ -50,7 +50,7 @@ type Way = (Vec2, f32);
 /// Characters go straight ahead at a coordinate of a path. Below the path's second node the stick is pushed as far as the
 /// coordinate says.
 #[must_use]
-pub fn measure_straight(rig: &Rig<'_>, path: usize, coordinate: f32) -> StraightPoint {
+pub fn measure_straight(rig: &Rig<'_>, path: PathId, coordinate: f32) -> StraightPoint {
     let Some(walk) = Gait::named(rig.pack, "walk") else { return StraightPoint::default() };
     let seeds: Vec<u64> = (0..rig.effort.straight as u64).collect();
     let ways = rig.each(&seeds, NOMINAL_SECS, |seed| go(rig, &walk, (path, coordinate), *seed));
@@ -68,9 +68,9 @@ pub fn measure_straight(rig: &Rig<'_>, path: usize, coordinate: f32) -> Straight
     }
 }
 
-fn go(rig: &Rig<'_>, walk: &Gait, (path, coordinate): (usize, f32), seed: u64) -> Option<Way> {
+fn go(rig: &Rig<'_>, walk: &Gait, (path, coordinate): (PathId, f32), seed: u64) -> Option<Way> {
     let mut rng = Rng::new(seed, 29);
-    let mut trial = Trial::new(rig.model, rig.pack, walk, false);
+    let mut trial = Trial::new(rig.model, rig.pack, rig.fragile_config(), walk);
     trial.place(Vec2::ZERO, rng.range(-0.2, 0.2));
     trial.steer(0.0, coordinate.min(1.0));
     let step = |trial: &mut Trial| {
@@ -98,9 +98,9 @@ fn go(rig: &Rig<'_>, walk: &Gait, (path, coordinate): (usize, f32), seed: u64) -
 
 /// Speed commanded at a coordinate: that of the nodes, interpolated, metres per second.
 #[must_use]
-pub fn commanded_mps(pack: &CharacterPack, path: usize, coordinate: f32) -> f32 {
+pub fn commanded_mps(pack: &CharacterPack, path: PathId, coordinate: f32) -> f32 {
     let graph = pack.graph();
-    let position = graph.paths()[path].position(coordinate);
-    let speed = |node: usize| graph.nodes()[node].speed_mps.unwrap_or(0.0);
+    let position = graph.path(path).position(coordinate);
+    let speed = |node: NodeId| graph.node(node).speed_mps.unwrap_or(0.0);
     speed(position.from) + position.t * (speed(position.to) - speed(position.from))
 }

@@ -135,7 +135,6 @@ fn turn(rig: &Rig<'_>, from: &Settled, angle: f32) -> Turn {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::evaluate::Rig;
     use crate::evaluate::trial::LowPass;
 
     /// Seconds that the detector tells for a velocity that turns to the left at a rate, radians per second.

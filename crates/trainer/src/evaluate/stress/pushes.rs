@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 
 use glam::Vec3;
-use policy_core::Body;
+use policy_core::BodyId;
 use serde::Serialize;
 
 use super::bisect::largest;
@@ -37,7 +37,7 @@ pub struct SidesReport {
 
 /// Largest pushes of 0.2 s that 15 of 16 characters survive for 3 s, by gait. A character stays in its gait.
 #[must_use]
-pub fn measure_pushes(rig: &Rig<'_>, body: Body) -> BTreeMap<String, SidesReport> {
+pub fn measure_pushes(rig: &Rig<'_>, body: BodyId) -> BTreeMap<String, SidesReport> {
     let measure = |gait: &_| {
         let settled = rig.settled(gait);
         let settled = &settled[..settled.len().min(CHARACTERS)];
@@ -69,7 +69,7 @@ pub(in crate::evaluate) fn nominal_trials(step_newton: f32, settled: usize) -> f
     2.0 * 4.0 * tries * settled.min(CHARACTERS) as f32
 }
 
-fn survives(rig: &Rig<'_>, from: &Settled, body: Body, force: Vec3) -> bool {
+fn survives(rig: &Rig<'_>, from: &Settled, body: BodyId, force: Vec3) -> bool {
     let mut trial = from.resume(rig.model);
     trial.character.push(body, force, PUSH_SECS).expect("forces tried are within bounds");
     (0..ticks(SURVIVED_SECS)).all(|_| trial.tick() && !trial.is_down())

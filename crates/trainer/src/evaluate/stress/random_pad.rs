@@ -2,7 +2,9 @@
 
 use std::collections::BTreeMap;
 
-use policy_core::{Bindings, Button, Buttons, CharacterPack, GraphPosition, SkillEnd};
+use policy_core::bindings::{Bindings, Control};
+use policy_core::training::fall_height;
+use policy_core::{Button, Buttons, CharacterPack, GraphPosition, SkillEnd};
 use serde::Serialize;
 
 use crate::Rng;
@@ -94,7 +96,7 @@ pub fn measure_random_pad(rig: &Rig<'_>) -> BTreeMap<String, RandomPadReport> {
 }
 
 fn play(rig: &Rig<'_>, walk: &Gait, kind: PadKind, seed: u64) -> Count {
-    let mut trial = Trial::new(rig.model, rig.pack, walk, true);
+    let mut trial = Trial::new(rig.model, rig.pack, rig.config, walk);
     let mut player = Player::new(kind, Rng::new(seed, 41));
     let (mut count, mut raised) = (Count::default(), false);
     for _ in 0..ticks(rig.effort.pad_secs) {
@@ -145,23 +147,14 @@ impl Start {
     }
 }
 
-/// Height below which a character at a place on the graph has fallen.
-fn fall_height(pack: &CharacterPack, position: GraphPosition) -> Option<f32> {
-    let height = |node: usize| pack.graph().nodes()[node].fall_height;
-    match position.as_node() {
-        Some(node) => height(node),
-        None => Some(height(position.from)?.min(height(position.to)?)),
-    }
-}
-
 fn is_low(pack: &CharacterPack, position: GraphPosition, pelvis_height: f32) -> bool {
     // The pelvis may have come up by a hair in the tick that the skill has had.
-    fall_height(pack, position).is_some_and(|limit| pelvis_height < limit + 0.05)
+    fall_height(pack.graph(), position).is_some_and(|limit| pelvis_height < limit + 0.05)
 }
 
 /// True on the way from where low is right.
 fn is_rising(pack: &CharacterPack, from: GraphPosition, to: GraphPosition) -> bool {
-    match (fall_height(pack, from), fall_height(pack, to)) {
+    match (fall_height(pack.graph(), from), fall_height(pack.graph(), to)) {
         (Some(from), Some(to)) => from < to,
         (from, to) => from.is_none() && to.is_some(),
     }
@@ -172,7 +165,7 @@ struct Player {
     kind: PadKind,
     rng: Rng,
     skills: Vec<Button>,
-    style: Button,
+    style: Option<Button>,
     /// Seconds until the stick, the triggers, the style button and the skill buttons change.
     change_in: [f32; 5],
 }
@@ -181,7 +174,11 @@ impl Player {
     fn new(kind: PadKind, rng: Rng) -> Self {
         let bindings = Bindings::default();
         let skills = bindings.skills.into_iter().map(|(button, _)| button).collect();
-        Self { kind, rng, skills, style: bindings.style_button, change_in: [1.0, 2.0, 2.0, 2.0, 3.0] }
+        let style = bindings.paths.iter().find_map(|binding| match binding.control {
+            Control::Button(button) => Some(button),
+            _ => None,
+        });
+        Self { kind, rng, skills, style, change_in: [1.0, 2.0, 2.0, 2.0, 3.0] }
     }
 
     /// Moves the controls of the pad.
@@ -203,10 +200,15 @@ impl Player {
             trial.pad.left_trigger = mostly_ends(rng, 0.4, 0.3);
         }
         let mut buttons = Buttons::NONE;
-        buttons.set(*button, trial.pad.buttons.contains(*button));
+        if let Some(button) = *button {
+            buttons.set(button, trial.pad.buttons.contains(button));
+        }
         if kind.moves(PadKind::Style) && *style <= 0.0 {
             *style = rng.range(0.5, 4.0);
-            buttons.set(*button, rng.chance(0.3));
+            let held = rng.chance(0.3);
+            if let Some(button) = *button {
+                buttons.set(button, held);
+            }
         }
         if *kind == PadKind::Everything && *skill <= 0.0 {
             *skill = rng.range(1.0, 8.0);

@@ -2,14 +2,13 @@
 //! gait stands is put elsewhere, walking, every 10 s, and stops there.
 
 use std::f32::consts::FRAC_PI_2;
-use std::sync::Arc;
 
 use glam::Vec2;
 use physics_bridge::Model;
-use policy_core::CharacterPack;
 use serde::Serialize;
 
 use crate::Rng;
+use crate::evaluate::Rig;
 use crate::evaluate::trial::{Disturbance, Gait, TICK_SECS, Trial, ticks};
 
 /// Half the side of the square in which characters are put down, metres.
@@ -40,16 +39,16 @@ impl FallReport {
     }
 }
 
-/// Falls of a character that roams for `secs`.
+/// Falls of a character of `model` that roams for `secs`.
 pub(super) fn roam(
+    rig: &Rig<'_>,
     model: &Model,
-    pack: &Arc<CharacterPack>,
     gait: &Gait,
     disturb: impl FnOnce(Disturbance, &Trial, Rng) -> Disturbance,
     (secs, seed): (f32, u64),
 ) -> u32 {
     let mut rng = Rng::new(seed, 31);
-    let mut trial = Trial::new(model, pack, gait, false);
+    let mut trial = Trial::new(model, rig.pack, rig.fragile_config(), gait);
     trial.disturbance = disturb(Disturbance::default(), &trial, Rng::new(seed, 37));
     let (mut falls, mut angle, mut turn_in, mut stood) = (0, 0.0, 0.0, f32::INFINITY);
     for _ in 0..ticks(secs) {

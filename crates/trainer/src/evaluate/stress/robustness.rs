@@ -11,30 +11,27 @@ use crate::evaluate::Rig;
 const ACTION_NOISE: f32 = 0.1;
 
 /// What differs from training.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug)]
 enum Change {
     Nothing,
     LateTick,
     Noise,
-    Settings(Settings),
+    Settings(fn(&mut Settings)),
     /// Factor on an attribute of the MJCF.
     Attribute(&'static str, f64),
 }
 
-/// Settings of the MJCF itself.
-const PLAIN: Settings = Settings { gravity: 1.0, friction: 1.0, strength: 1.0 };
-
 const CASES: [(&str, Change); 13] = [
     ("none", Change::Nothing),
     ("latency_1_tick", Change::LateTick),
-    ("strength_x0.8", Change::Settings(Settings { strength: 0.8, ..PLAIN })),
-    ("strength_x1.2", Change::Settings(Settings { strength: 1.2, ..PLAIN })),
-    ("friction_x0.5", Change::Settings(Settings { friction: 0.5, ..PLAIN })),
-    ("friction_x1.5", Change::Settings(Settings { friction: 1.5, ..PLAIN })),
-    ("gravity_x0.8", Change::Settings(Settings { gravity: 0.8, ..PLAIN })),
-    ("gravity_x1.2", Change::Settings(Settings { gravity: 1.2, ..PLAIN })),
-    ("mass_x0.8", Change::Attribute("density", 0.8)),
-    ("mass_x1.2", Change::Attribute("density", 1.2)),
+    ("strength_x0.8", Change::Settings(|settings| settings.strength = 0.8)),
+    ("strength_x1.2", Change::Settings(|settings| settings.strength = 1.2)),
+    ("friction_x0.5", Change::Settings(|settings| settings.friction = 0.5)),
+    ("friction_x1.5", Change::Settings(|settings| settings.friction = 1.5)),
+    ("gravity_x0.8", Change::Settings(|settings| settings.gravity = 0.8)),
+    ("gravity_x1.2", Change::Settings(|settings| settings.gravity = 1.2)),
+    ("mass_x0.8", Change::Settings(|settings| settings.mass = 0.8)),
+    ("mass_x1.2", Change::Settings(|settings| settings.mass = 1.2)),
     ("timestep_x0.5", Change::Attribute("timestep", 0.5)),
     ("timestep_x2", Change::Attribute("timestep", 2.0)),
     ("action_noise_0.1", Change::Noise),
@@ -55,8 +52,8 @@ pub fn measure_robustness(
         let measure = |gait: &_| {
             rig.each(&seeds, secs, |seed| {
                 roam(
+                    rig,
                     &model,
-                    rig.pack,
                     gait,
                     |none, trial, rng| match change {
                         Change::LateTick => none.late(trial.controller.joint_targets()),
@@ -79,8 +76,15 @@ pub(in crate::evaluate) const CASE_COUNT: usize = CASES.len();
 
 fn changed(model: &Model, change: Change) -> Result<Model, ModelError> {
     match change {
-        Change::Settings(settings) => model.with_settings(settings),
-        Change::Attribute(name, factor) => Model::from_mjcf(&scaled(model.mjcf(), name, factor)),
+        Change::Settings(change) => {
+            let mut settings = model.settings();
+            change(&mut settings);
+            model.with_settings(settings)
+        }
+        Change::Attribute(name, factor) => {
+            let text = scaled(model.mjcf(), name, factor);
+            Model::from_mjcf_with_skeleton(&text, model.skeleton().clone())
+        }
         Change::Nothing | Change::LateTick | Change::Noise => Ok(model.clone()),
     }
 }

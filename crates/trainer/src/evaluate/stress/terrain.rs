@@ -29,7 +29,7 @@ pub fn measure_terrain(rig: &Rig<'_>) -> Result<BTreeMap<String, BTreeMap<String
     for (name, terrain) in GROUNDS {
         let model = rig.model.with_terrain(terrain)?;
         let measure = |gait: &_| {
-            rig.each(&seeds, secs, |seed| roam(&model, rig.pack, gait, |none, _, _| none, (secs, *seed)))
+            rig.each(&seeds, secs, |seed| roam(rig, &model, gait, |none, _, _| none, (secs, *seed)))
         };
         let gaits = rig.gaits();
         let falls = gaits.iter().map(|gait| (gait.name.into(), FallReport::of(&measure(gait), secs)));

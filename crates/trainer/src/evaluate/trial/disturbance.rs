@@ -1,6 +1,7 @@
 //! What comes between a controller and its motors: a late tick, noise.
 
-use policy_core::{ActionScaling, JointTargets};
+use policy_core::JointTargets;
+use policy_core::training::ActionScaling;
 
 use crate::Rng;
 
@@ -23,18 +24,14 @@ impl Disturbance {
     /// Joint targets come one tick late; the first ones are `targets`.
     #[must_use]
     pub fn late(mut self, targets: &JointTargets) -> Self {
-        self.late = Some(*targets);
+        self.late = Some(targets.clone());
         self
     }
 
     /// Normal noise with a standard deviation of `deviation` on every action, in the policy's own scale.
     #[must_use]
     pub fn noisy(mut self, scaling: &ActionScaling, deviation: f32, rng: Rng) -> Self {
-        let (mut zero, mut one) = (JointTargets::default(), JointTargets::default());
-        let joints = zero.0.len();
-        scaling.targets_into(&[0.0; policy_core::DOF_COUNT], &mut zero);
-        scaling.targets_into(&[1.0; policy_core::DOF_COUNT], &mut one);
-        let deviations = (0..joints).map(|joint| deviation * (one.0[joint] - zero.0[joint])).collect();
+        let deviations = scaling.gain().iter().map(|gain| deviation * gain).collect();
         self.noise = Some(Noise { deviations, rng });
         self
     }
@@ -42,7 +39,7 @@ impl Disturbance {
     /// Changes what the controller wants into what the motors get.
     pub fn apply(&mut self, targets: &mut JointTargets) {
         if let Some(Noise { deviations, rng }) = &mut self.noise {
-            targets.0.iter_mut().zip(deviations).for_each(|(target, by)| *target += *by * rng.normal());
+            targets.iter_mut().zip(deviations).for_each(|(target, by)| *target += *by * rng.normal());
         }
         if let Some(late) = &mut self.late {
             core::mem::swap(late, targets);
@@ -55,9 +52,7 @@ mod tests {
     use super::*;
 
     fn targets(value: f32) -> JointTargets {
-        let mut targets = JointTargets::default();
-        targets.0.fill(value);
-        targets
+        JointTargets::from(vec![value; 2])
     }
 
     #[test]
@@ -72,15 +67,13 @@ mod tests {
 
     #[test]
     fn noise_is_scaled_by_the_gain_of_the_joint() {
-        let count = policy_core::DOF_COUNT;
-        let gains = core::array::from_fn(|joint| if joint == 0 { 2.0 } else { 1.0 });
-        let scaling = ActionScaling::from_centre_and_gain([0.3; policy_core::DOF_COUNT], gains).unwrap();
+        let scaling = ActionScaling::from_centre_and_gain(&[0.3, 0.3], &[2.0, 1.0]).unwrap();
         let mut noise = Disturbance::default().noisy(&scaling, 0.1, Rng::new(1, 2));
-        let mut squares = vec![0.0_f64; count];
+        let mut squares = [0.0_f64; 2];
         for _ in 0..4000 {
             let mut now = targets(0.0);
             noise.apply(&mut now);
-            squares.iter_mut().zip(now.0).for_each(|(sum, n)| *sum += f64::from(n * n));
+            squares.iter_mut().zip(now.iter()).for_each(|(sum, n)| *sum += f64::from(n * n));
         }
         let deviation = |joint: usize| (squares[joint] / 4000.0).sqrt();
         assert!((deviation(0) - 0.2).abs() < 0.01 && (deviation(1) - 0.1).abs() < 0.005);

@@ -13,9 +13,11 @@ use std::sync::Arc;
 use glam::Vec2;
 use physics_bridge::{CONTROL_HZ, Character, Model, WALKING_START_MPS};
 use policy_core::{
-    Bindings, Body, CharacterPack, CharacterState, Command, CommandMapper, Controller, ControllerConfig,
-    GamepadState, Heading,
+    Bindings, CharacterPack, CharacterState, Command, CommandMapper, Controller, ControllerConfig,
+    GamepadState, Heading, JointTargets, SkillId,
 };
+
+use super::subject::is_upright;
 
 pub use disturbance::Disturbance;
 pub use gait::Gait;
@@ -48,22 +50,24 @@ pub struct Trial {
     /// What comes between the controller and the motors.
     pub disturbance: Disturbance,
     mapper: CommandMapper,
-    asked_skill: Option<usize>,
+    asked_skill: Option<SkillId>,
+    targets: JointTargets,
 }
 
 impl Trial {
-    /// A character that walks along x, with the pad in the hold of `gait`. `auto_recover` lets it get up by itself.
+    /// A character that walks along x, with the pad in the hold of `gait`.
     #[must_use]
-    pub fn new(model: &Model, pack: &Arc<CharacterPack>, gait: &Gait, auto_recover: bool) -> Self {
-        let config = ControllerConfig { recover: auto_recover, start: gait.start, ..Default::default() };
+    pub fn new(model: &Model, pack: &Arc<CharacterPack>, config: ControllerConfig, gait: &Gait) -> Self {
+        let config = ControllerConfig { start: gait.start, ..config };
         let mut trial = Self {
             character: Character::new(model),
             controller: Controller::with_config(pack.clone(), config),
-            state: CharacterState::default(),
+            state: CharacterState::new(pack.skeleton()),
             pad: gait.pad,
             velocity: LowPass::default(),
             disturbance: Disturbance::default(),
             asked_skill: None,
+            targets: JointTargets::new(pack.skeleton()),
             mapper: CommandMapper::new(pack, &Bindings::default()),
         };
         trial.place(Vec2::ZERO, 0.0);
@@ -83,7 +87,7 @@ impl Trial {
     /// True when the policy that the controller starts with stands still.
     fn stands(&self) -> bool {
         let node = self.controller.report().position.nearest_node();
-        self.controller.pack().graph().nodes()[node].speed_mps == Some(0.0)
+        self.controller.pack().graph().node(node).speed_mps == Some(0.0)
     }
 
     /// Points the stick to a direction, radians from x, counter-clockwise, as far as `push` in [0, 1].
@@ -101,18 +105,18 @@ impl Trial {
         let mut command = self.mapper.map(&self.pad, Heading::FORWARD, &self.state);
         change(&mut command);
         self.asked_skill = command.skill;
-        let mut targets = *self.controller.tick(&self.state, &command, TICK_SECS);
-        self.disturbance.apply(&mut targets);
-        self.character.actuate(&targets);
+        self.targets.copy_from_slice(self.controller.tick(&self.state, &command, TICK_SECS));
+        self.disturbance.apply(&mut self.targets);
+        self.character.actuate(&self.targets);
         let sound = self.character.step().is_ok();
         self.character.sense_into(&mut self.state);
-        self.velocity.tick(self.state.body(Body::Pelvis).linear_velocity.truncate());
+        self.velocity.tick(self.state.root().linear_velocity.truncate());
         sound
     }
 
-    /// Index of the skill that was asked for in the last tick.
+    /// The skill that was asked for in the last tick.
     #[must_use]
-    pub fn asked_skill(&self) -> Option<usize> {
+    pub fn asked_skill(&self) -> Option<SkillId> {
         self.asked_skill
     }
 
@@ -125,25 +129,25 @@ impl Trial {
     /// Horizontal place of the pelvis, metres.
     #[must_use]
     pub fn position(&self) -> Vec2 {
-        self.state.body(Body::Pelvis).position.truncate()
+        self.state.root().position.truncate()
     }
 
     /// Height of the pelvis above the ground, metres.
     #[must_use]
     pub fn pelvis_height(&self) -> f32 {
-        self.state.height_of(Body::Pelvis)
+        self.state.root_height()
     }
 
     /// Angle of the pelvis' heading from x, radians.
     #[must_use]
     pub fn heading(&self) -> f32 {
-        Heading::from_rotation(self.state.body(Body::Pelvis).rotation).angle()
+        Heading::from_rotation(self.state.root().rotation).angle()
     }
 
     /// True when pelvis and head are as high as in standing.
     #[must_use]
     pub fn is_upright(&self) -> bool {
-        self.pelvis_height() > 0.65 && self.state.height_of(Body::Head) > 1.1
+        is_upright(self.controller.pack().skeleton(), &self.state)
     }
 
     /// True when the graph position is where the controller is going.

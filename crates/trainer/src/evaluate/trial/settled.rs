@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use physics_bridge::{Model, Snapshot};
-use policy_core::{CharacterPack, Controller};
+use policy_core::{CharacterPack, Controller, ControllerConfig};
 
 use super::{Gait, LowPass, Trial, ticks};
 use crate::Rng;
@@ -35,9 +35,15 @@ impl Settled {
 
     /// Lets a character settle in a gait, at a phase that is drawn from the seed. `None` when it falls on the way.
     #[must_use]
-    pub fn one(model: &Model, pack: &Arc<CharacterPack>, gait: &Gait, seed: u64) -> Option<Settled> {
+    pub fn one(
+        model: &Model,
+        pack: &Arc<CharacterPack>,
+        config: ControllerConfig,
+        gait: &Gait,
+        seed: u64,
+    ) -> Option<Settled> {
         let mut rng = Rng::new(seed, 23);
-        let mut trial = Trial::new(model, pack, gait, false);
+        let mut trial = Trial::new(model, pack, config, gait);
         trial.place(glam::Vec2::ZERO, rng.range(-MOST_ANGLE, MOST_ANGLE));
         let [least, more] = SETTLE_SECS;
         let mut left = ticks(least + rng.range(0.0, more));
@@ -62,7 +68,7 @@ impl Settled {
     #[must_use]
     pub fn resume(&self, model: &Model) -> Trial {
         let pack = self.controller.pack().clone();
-        let mut trial = Trial::new(model, &pack, &self.gait, false);
+        let mut trial = Trial::new(model, &pack, *self.controller.config(), &self.gait);
         trial.character.restore(&self.snapshot).expect("a snapshot of the same character");
         trial.controller = self.controller.clone();
         trial.character.sense_into(&mut trial.state);
