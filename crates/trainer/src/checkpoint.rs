@@ -174,11 +174,8 @@ impl Checkpoint {
 
     fn to_bytes(&self) -> std::io::Result<Vec<u8>> {
         let parts = |role: &String, t: &Trained| {
-            let all = [
-                ("parameters", &t.network.parameters),
-                ("mean", &t.adam.mean),
-                ("square", &t.adam.square),
-            ];
+            let all =
+                [("parameters", &t.network.parameters), ("mean", &t.adam.mean), ("square", &t.adam.square)];
             let halved = self.progress.halves && role.ends_with(DISCRIMINATOR);
             let written = move |(part, values): (&str, &Vec<f32>)| match halved {
                 true => (format!("{role}.{part}"), Dtype::F16, half_bytes(values)),

@@ -115,7 +115,8 @@ fn a_slim_checkpoint_holds_discriminators_in_half_precision() {
     });
     assert_eq!(whole.1.networks["walk.discriminator"].network, network);
     let halved = &slim.1.networks["walk.discriminator"].network;
-    let worst = halved.parameters.iter().zip(&network.parameters).map(|(a, b)| (a - b).abs()).fold(0.0, f32::max);
+    let worst =
+        halved.parameters.iter().zip(&network.parameters).map(|(a, b)| (a - b).abs()).fold(0.0, f32::max);
     assert!(worst > 0.0 && worst < 1e-3, "{worst}");
     assert!(slim.0 + 2 * (count as u64) < whole.0, "{} after {}", slim.0, whole.0);
 }

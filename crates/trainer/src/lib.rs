@@ -21,6 +21,7 @@ pub mod run;
 pub mod storage;
 pub mod strip;
 pub mod style;
+pub mod text;
 pub mod training;
 pub mod workspace;
 

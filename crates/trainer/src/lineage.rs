@@ -6,6 +6,7 @@ use std::path::{Path, PathBuf};
 use serde::{Deserialize, Serialize};
 
 use crate::storage::read_text_bounded;
+use crate::text::quoted;
 
 mod execute;
 
@@ -150,7 +151,10 @@ impl Lineage {
     /// # Errors
     /// As [`Lineage::load`].
     pub fn parse(path: &Path, text: &str) -> Result<Self, LineageError> {
-        let toml = |e: toml::de::Error| LineageError::Toml { path: path.to_owned(), message: e.to_string() };
+        let toml = |e: toml::de::Error| LineageError::Toml {
+            path: path.to_owned(),
+            message: quoted(&e.to_string()),
+        };
         let lineage: Self = toml::from_str(text).map_err(toml)?;
         let wrong =
             |step, expected, found| LineageError::Step { path: path.to_owned(), step, expected, found };

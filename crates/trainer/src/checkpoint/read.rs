@@ -7,6 +7,7 @@ use safetensors::tensor::SafeTensors;
 use super::numbers::floats;
 use super::{Checkpoint, EMA, FORMAT, Progress, Trained};
 use crate::nn::{Adam, Network};
+use crate::text::quoted;
 
 /// [`EMA`] in version 1.
 const EMA_OF_VERSION_1: &str = "average";
@@ -25,7 +26,7 @@ pub(super) struct Wrong {
 }
 
 fn wrong(expected: impl Into<String>, found: impl Into<String>) -> Wrong {
-    Wrong { expected: expected.into(), found: found.into() }
+    Wrong { expected: quoted(&expected.into()), found: quoted(&found.into()) }
 }
 
 /// Parses the bytes of a checkpoint. Nothing is allocated before its size is compared with that of the file.
