@@ -156,8 +156,10 @@ impl Lineage {
             message: quoted(&e.to_string()),
         };
         let lineage: Self = toml::from_str(text).map_err(toml)?;
-        let wrong =
-            |step, expected, found| LineageError::Step { path: path.to_owned(), step, expected, found };
+        let wrong = |step, expected, found: String| {
+            let found = quoted(&found);
+            LineageError::Step { path: path.to_owned(), step, expected, found }
+        };
         if lineage.steps.len() > MOST_STEPS {
             return Err(wrong(MOST_STEPS, "at most 1000 steps", lineage.steps.len().to_string()));
         }

@@ -153,8 +153,10 @@ fn section<T: DeserializeOwned>(
     base: &Table,
     over: &Table,
 ) -> Result<T, RecipeError> {
-    T::deserialize(Value::Table(overlaid(base, over)))
-        .map_err(|e| RecipeError::Toml { path: path.to_owned(), message: format!("{name}: {}", e.message()) })
+    T::deserialize(Value::Table(overlaid(base, over))).map_err(|e| RecipeError::Toml {
+        path: path.to_owned(),
+        message: format!("{name}: {}", quoted(e.message())),
+    })
 }
 
 /// The fields of `base` and `over`; where both have one, that of `over`. Tables are overlaid field by field.
