@@ -7,6 +7,7 @@ pub mod clip;
 pub mod compare;
 pub mod env;
 pub mod evaluate;
+pub mod limp;
 pub mod lineage;
 pub mod nn;
 pub mod normaliser_file;
