@@ -10,8 +10,8 @@ use policy_core::{Blend, CharacterPack, CharacterState, Command, NodeId};
 use rayon::prelude::*;
 use serde::Serialize;
 
+use super::eval_character::{EvalCharacter, SETTLE_SECS};
 use super::motion::pose_error;
-use super::subject::{SETTLE_SECS, Subject};
 use crate::Rng;
 use crate::env::DT_SECS;
 
@@ -104,16 +104,16 @@ fn difference(walks: &[Walk], others: &[Walk]) -> f32 {
 
 /// States of a character that goes straight ahead; `None` when it falls after it has settled.
 fn walk(model: &Model, pack: &Arc<CharacterPack>, node: NodeId, blend: Option<Blend>, seed: u64) -> Walk {
-    let mut subject = Subject::at(model, pack, node);
+    let mut eval = EvalCharacter::at(model, pack, node);
     let settle = ((SETTLE_SECS + Rng::new(seed, 19).range(0.0, 1.0)) / DT_SECS) as u32;
     let mut states = Vec::new();
     for tick in 0..settle + (TEST_SECS / DT_SECS) as u32 {
-        let command = Command { blend: blend.filter(|_| tick >= settle), ..subject.ahead(node) };
-        if !subject.tick(&command) || subject.controller.report().fallen {
+        let command = Command { blend: blend.filter(|_| tick >= settle), ..eval.ahead(node) };
+        if !eval.tick(&command) || eval.controller.report().fallen {
             return None;
         }
         if tick >= settle {
-            states.push(subject.state.clone());
+            states.push(eval.state.clone());
         }
     }
     Some(states)

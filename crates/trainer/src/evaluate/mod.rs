@@ -2,6 +2,7 @@
 //! pushes, distances between parameters, how a motion looks beside its clip, and what a player feels: turns, starts, stops, drift.
 
 mod effort;
+mod eval_character;
 mod layers;
 pub mod legs;
 mod motion;
@@ -19,12 +20,12 @@ mod skills;
 #[cfg(test)]
 mod smoke_tests;
 pub mod stress;
-mod subject;
 mod table;
 pub mod trial;
 mod upright;
 
 pub use effort::Effort;
+pub use eval_character::{EvalCharacter, Wanderer};
 pub use layers::{LayerReport, measure_layers, watch_layers};
 pub use motion::{MotionReport, STANCE_METRES, clip_states, pose_error, watch};
 pub use paths::{measure_coordinates, measure_sweep};
@@ -35,6 +36,5 @@ pub use report::{Evaluation, ModeReport, PathReport, PushReport, SpeedPoint, eva
 pub use rig::Rig;
 pub use section::Section;
 pub use skills::{RateReport, measure_get_up, measure_skill, watch_skill};
-pub use subject::{Subject, Wanderer};
 pub use table::table;
 pub use upright::{UprightReport, measure_upright};

@@ -7,7 +7,7 @@ use physics_bridge::Model;
 use policy_core::{CharacterPack, CharacterState, Heading, NodeId, Skeleton};
 use serde::Serialize;
 
-use super::subject::{SETTLE_SECS, Subject};
+use super::eval_character::{EvalCharacter, SETTLE_SECS};
 use crate::clip::{Clip, TICK_STRIDE};
 use crate::env::{DT_SECS, SourceError, fit};
 
@@ -67,15 +67,15 @@ impl MotionReport {
 /// States of a policy that goes straight ahead, after it has settled; empty when it falls.
 #[must_use]
 pub fn watch(model: &Model, pack: &Arc<CharacterPack>, node: NodeId) -> Vec<CharacterState> {
-    let mut subject = Subject::at(model, pack, node);
+    let mut eval = EvalCharacter::at(model, pack, node);
     let mut states = Vec::new();
     for tick in 0..((SETTLE_SECS + WATCHED_SECS) / DT_SECS) as u32 {
-        let command = subject.ahead(node);
-        if !subject.tick(&command) || subject.controller.report().fallen {
+        let command = eval.ahead(node);
+        if !eval.tick(&command) || eval.controller.report().fallen {
             return Vec::new();
         }
         if tick as f32 * DT_SECS >= SETTLE_SECS {
-            states.push(subject.state.clone());
+            states.push(eval.state.clone());
         }
     }
     states

@@ -9,7 +9,7 @@ use policy_core::{CharacterPack, Command, Goal, NodeId};
 use rayon::prelude::*;
 use serde::Serialize;
 
-use super::subject::{SETTLE_SECS, Subject};
+use super::eval_character::{EvalCharacter, SETTLE_SECS};
 use crate::Rng;
 use crate::env::DT_SECS;
 
@@ -45,7 +45,7 @@ pub fn measure_upright(
 
 fn walk(model: &Model, pack: &Arc<CharacterPack>, node: NodeId, seed: u64) -> Option<f32> {
     let graph = pack.graph();
-    let mut subject = Subject::at(model, pack, node);
+    let mut eval = EvalCharacter::at(model, pack, node);
     let stands = graph.node(node).speed_mps == Some(0.0);
     let mut rng = Rng::new(seed, 17);
     let (mut angle, mut along) = (0.0, 0.0);
@@ -55,14 +55,14 @@ fn walk(model: &Model, pack: &Arc<CharacterPack>, node: NodeId, seed: u64) -> Op
         if tick % settled == 0 && tick > 0 {
             angle += rng.range(-1.0, 1.0) * std::f32::consts::FRAC_PI_2;
         }
-        let before = subject.position();
+        let before = eval.position();
         let target = (!stands).then_some(before + TARGET_RANGE_METRES * Vec2::from_angle(angle));
         let command = Command { target, goal: Goal::Node(node), ..Command::default() };
-        if !subject.tick(&command) || subject.controller.report().fallen {
+        if !eval.tick(&command) || eval.controller.report().fallen {
             return None;
         }
         if tick >= settled {
-            along += (subject.position() - before).dot(Vec2::from_angle(angle));
+            along += (eval.position() - before).dot(Vec2::from_angle(angle));
         }
     }
     Some(along / ((ticks - settled) as f32 * DT_SECS))

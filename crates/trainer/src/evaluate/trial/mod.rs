@@ -17,7 +17,7 @@ use policy_core::{
     GamepadState, Heading, JointTargets, SkillId,
 };
 
-use super::subject::is_upright;
+use super::eval_character::is_upright;
 
 pub use disturbance::Disturbance;
 pub use gait::Gait;

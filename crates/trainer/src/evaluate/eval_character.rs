@@ -21,7 +21,7 @@ const REACH_SECS: f32 = 15.0;
 
 /// A character and its controller.
 #[derive(Debug)]
-pub struct Subject {
+pub struct EvalCharacter {
     /// The body.
     pub character: Character,
     /// What steers it.
@@ -30,19 +30,19 @@ pub struct Subject {
     pub state: CharacterState,
 }
 
-impl Subject {
+impl EvalCharacter {
     /// A character that walks along x from the node called `start`, or from the first one. It does not get up by itself.
     #[must_use]
     pub fn new(model: &Model, pack: &Arc<CharacterPack>, start: &str) -> Self {
         let start = pack.graph().node_named(start).unwrap_or_default();
         let config = ControllerConfig { auto_recover: false, start, ..ControllerConfig::default() };
-        let mut subject = Self {
+        let mut eval = Self {
             character: Character::new(model),
             controller: Controller::with_config(pack.clone(), config),
             state: CharacterState::new(pack.skeleton()),
         };
-        subject.reset(Heading::FORWARD);
-        subject
+        eval.reset(Heading::FORWARD);
+        eval
     }
 
     /// A character that acts as `node`, straight ahead: one that is on a path and moves is reached from Walk, the second node
@@ -53,16 +53,16 @@ impl Subject {
         let path = graph.paths().iter().find(|p| p.nodes().contains(&node));
         let stands = graph.node(node).speed_mps == Some(0.0);
         let start = path.filter(|_| !stands).map_or(node, |p| p.nodes()[1]);
-        let mut subject = Self::new(model, pack, &graph.node(start).name);
+        let mut eval = Self::new(model, pack, &graph.node(start).name);
         for _ in 0..(REACH_SECS / DT_SECS) as u32 {
-            let position = subject.controller.report().position;
+            let position = eval.controller.report().position;
             if position == GraphPosition::node(node) {
                 break;
             }
-            let command = subject.ahead(node);
-            subject.tick(&command);
+            let command = eval.ahead(node);
+            eval.tick(&command);
         }
-        subject
+        eval
     }
 
     /// Stands it up at the origin, walking.
