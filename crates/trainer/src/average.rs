@@ -3,13 +3,10 @@
 
 use std::path::PathBuf;
 
-use crate::checkpoint::{Checkpoint, CheckpointError};
+use crate::checkpoint::{ACTOR, Checkpoint, CheckpointError, EMA};
 use crate::nn::Network;
-use crate::training::AVERAGE;
 
-const ACTOR: &str = "actor";
-
-/// The first checkpoint with every policy, and its running mean, replaced by the mean of the running means of all; policies
+/// The first checkpoint with every policy, and its moving average, replaced by the mean of the moving averages of all; policies
 /// whose role begins with one of `except` and a dot stay as they are in the first. Paths are named in errors.
 ///
 /// # Errors
@@ -27,10 +24,10 @@ pub fn average(
     let roles: Vec<String> =
         mean.networks.keys().filter(|role| role.ends_with(ACTOR) && !is_kept(role)).cloned().collect();
     for role in roles {
-        let running = format!("{}{AVERAGE}", role.strip_suffix(ACTOR).unwrap_or_default());
+        let ema = format!("{}{EMA}", role.strip_suffix(ACTOR).unwrap_or_default());
         let mut sum = vec![0.0_f64; mean.networks[&role].network.parameters.len()];
         for (checkpoint, path) in checkpoints {
-            let network = match checkpoint.networks.get(&running) {
+            let network = match checkpoint.networks.get(&ema) {
                 Some(trained) => &trained.network,
                 None => &checkpoint.network(&role, path)?.network,
             };
@@ -48,7 +45,7 @@ pub fn average(
         let set = |network: &mut Network| {
             network.parameters.iter_mut().zip(&sum).for_each(|(p, sum)| *p = (sum / count) as f32);
         };
-        for role in [&role, &running] {
+        for role in [&role, &ema] {
             if let Some(trained) = mean.networks.get_mut(role) {
                 set(&mut trained.network);
             }
@@ -79,14 +76,14 @@ mod tests {
     }
 
     #[test]
-    fn policies_become_the_mean_of_the_running_means() {
+    fn policies_become_the_mean_of_the_moving_averages() {
         let all = [
-            of(&[("a.actor", 9.0), ("a.average", 1.0), ("b.actor", 5.0), ("critic", 7.0)], 3),
-            of(&[("a.actor", 8.0), ("a.average", 3.0), ("b.actor", 6.0), ("critic", 8.0)], 3),
+            of(&[("a.actor", 9.0), ("a.ema", 1.0), ("b.actor", 5.0), ("critic", 7.0)], 3),
+            of(&[("a.actor", 8.0), ("a.ema", 3.0), ("b.actor", 6.0), ("critic", 8.0)], 3),
         ];
         let mean = average(&all, &["b".to_owned()]).unwrap();
         let first = |role: &str| mean.networks[role].network.parameters[0];
-        assert_eq!(["a.actor", "a.average", "b.actor", "critic"].map(first), [2.0, 2.0, 5.0, 7.0]);
+        assert_eq!(["a.actor", "a.ema", "b.actor", "critic"].map(first), [2.0, 2.0, 5.0, 7.0]);
         assert_eq!(average(&all, &[]).unwrap().networks["b.actor"].network.parameters[0], 5.5);
     }
 

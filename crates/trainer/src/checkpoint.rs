@@ -1,19 +1,43 @@
-//! Checkpoints: safetensors files written whole or not at all, with everything a run needs to go on.
+//! Checkpoints: safetensors files with all that a run needs to continue, and no more.
 //!
-//! The characters' places are not kept: a run that is resumed starts new episodes.
+//! The states of the characters are not kept: a resumed run starts new episodes.
 
 use std::collections::HashMap;
 use std::path::{Path, PathBuf};
 
-use safetensors::tensor::{Dtype, SafeTensors, TensorView};
+use safetensors::tensor::{Dtype, TensorView};
 use serde::{Deserialize, Serialize};
 
 use crate::Rng;
 use crate::nn::{Adam, Network};
-use crate::training::{AVERAGE, PARENT_DISCRIMINATOR};
+use crate::storage::{read_bounded, write_atomically, write_keeping_previous};
 
-/// Version of the checkpoint format.
-const FORMAT: u32 = 1;
+mod numbers;
+mod read;
+
+pub use numbers::{bytes, floats, half_bytes};
+use read::{Wrong, read};
+
+/// Version of the checkpoint format. Version 1 called [`EMA`] `average` and had no checksums; it still loads.
+const FORMAT: u32 = 2;
+
+/// Role of a policy that learns.
+pub const ACTOR: &str = "actor";
+
+/// Role of a policy's exponential moving average.
+pub const EMA: &str = "ema";
+
+/// Role of a discriminator.
+pub const DISCRIMINATOR: &str = "discriminator";
+
+/// Role of the discriminator of a parent's style.
+pub const PARENT_DISCRIMINATOR: &str = "parent_discriminator";
+
+/// Role of the critic.
+pub const CRITIC: &str = "critic";
+
+/// Largest checkpoint, bytes.
+pub const MOST_BYTES: u64 = 1 << 30;
 
 /// Why a checkpoint can't be used.
 #[derive(Debug, thiserror::Error)]
@@ -58,11 +82,18 @@ pub struct Progress {
     pub samples: u64,
     /// Wall-clock seconds of training.
     pub secs: f64,
-    /// Rate of the actors' Adam, their geometric mean.
-    pub actor_rate: f32,
+    /// Learning rate of the actors, their geometric mean.
+    #[serde(alias = "actor_rate")]
+    pub learning_rate: f32,
     /// The learner's random numbers.
     pub rng: Rng,
     sizes: HashMap<String, (Vec<usize>, u64)>,
+    /// True when discriminators are written in half precision.
+    #[serde(skip)]
+    halves: bool,
+    /// CRC-32 of every tensor.
+    #[serde(default, skip_serializing_if = "HashMap::is_empty")]
+    checksums: HashMap<String, u32>,
 }
 
 /// State of a run.
@@ -80,105 +111,104 @@ impl Checkpoint {
     pub fn new(
         networks: HashMap<String, Trained>,
         (seed, samples, secs): (u64, u64, f64),
-        actor_rate: f32,
+        learning_rate: f32,
         rng: Rng,
     ) -> Self {
         let sizes = networks
             .iter()
             .map(|(role, t)| (role.clone(), (t.network.sizes().to_vec(), t.adam.steps)))
             .collect();
-        Self { networks, progress: Progress { format: FORMAT, seed, samples, secs, actor_rate, rng, sizes } }
+        let checksums = HashMap::new();
+        let progress = Progress {
+            format: FORMAT,
+            seed,
+            samples,
+            secs,
+            learning_rate,
+            rng,
+            sizes,
+            halves: false,
+            checksums,
+        };
+        Self { networks, progress }
     }
 
-    /// The checkpoint without the optimisers' moments, with the running means of policies in their place: a third of its
-    /// size, enough to go on from, after a few iterations of finding its pace again.
+    /// The checkpoint without the optimisers' moments, with the moving averages of the policies in their place.
+    ///
+    /// Discriminators are written in half precision: they adapt to the policies in any case. The file has a fifth of the size.
+    /// Training continues from it after a few iterations in which Adam finds its pace.
     #[must_use]
     pub fn slim(mut self) -> Self {
         self.networks.remove(PARENT_DISCRIMINATOR);
-        let means: Vec<String> = self.networks.keys().filter(|r| r.ends_with(AVERAGE)).cloned().collect();
-        for role in means {
-            let actor = format!("{}actor", role.strip_suffix(AVERAGE).unwrap_or_default());
-            self.networks.remove(&role).and_then(|mean| self.networks.insert(actor, mean));
+        let averages: Vec<String> = self.networks.keys().filter(|r| r.ends_with(EMA)).cloned().collect();
+        for role in averages {
+            let actor = format!("{}{ACTOR}", role.strip_suffix(EMA).unwrap_or_default());
+            self.networks.remove(&role).and_then(|average| self.networks.insert(actor, average));
         }
         for trained in self.networks.values_mut() {
             trained.adam = Adam { mean: Vec::new(), square: Vec::new(), steps: 0 };
         }
         let p = &self.progress;
-        Self::new(self.networks, (p.seed, p.samples, p.secs), p.actor_rate, p.rng)
+        let mut slim = Self::new(self.networks, (p.seed, p.samples, p.secs), p.learning_rate, p.rng);
+        slim.progress.halves = true;
+        slim
     }
 
-    /// Writes the file beside its place and moves it there.
+    /// Writes the file, whole or not at all.
     ///
     /// # Errors
     /// When it can't be written.
     pub fn save(&self, path: &Path) -> Result<(), CheckpointError> {
         let io = |source| CheckpointError::Io { path: path.to_owned(), source };
+        write_atomically(path, &self.to_bytes().map_err(io)?).map_err(io)
+    }
+
+    /// As [`Checkpoint::save`]; the file that was there becomes `previous`.
+    ///
+    /// # Errors
+    /// As [`Checkpoint::save`].
+    pub fn save_keeping_previous(&self, path: &Path, previous: &Path) -> Result<(), CheckpointError> {
+        let io = |source| CheckpointError::Io { path: path.to_owned(), source };
+        write_keeping_previous(path, previous, &self.to_bytes().map_err(io)?).map_err(io)
+    }
+
+    fn to_bytes(&self) -> std::io::Result<Vec<u8>> {
         let parts = |role: &String, t: &Trained| {
-            let all = [
-                (format!("{role}.parameters"), bytes(&t.network.parameters)),
-                (format!("{role}.mean"), bytes(&t.adam.mean)),
-                (format!("{role}.square"), bytes(&t.adam.square)),
-            ];
-            all.into_iter().filter(|(_, data)| !data.is_empty())
+            let all =
+                [("parameters", &t.network.parameters), ("mean", &t.adam.mean), ("square", &t.adam.square)];
+            let halved = self.progress.halves && role.ends_with(DISCRIMINATOR);
+            let written = move |(part, values): (&str, &Vec<f32>)| match halved {
+                true => (format!("{role}.{part}"), Dtype::F16, half_bytes(values)),
+                false => (format!("{role}.{part}"), Dtype::F32, bytes(values)),
+            };
+            all.map(written).into_iter().filter(|(.., data)| !data.is_empty())
         };
-        let tensors: Vec<(String, Vec<u8>)> =
+        let tensors: Vec<(String, Dtype, Vec<u8>)> =
             self.networks.iter().flat_map(|(role, t)| parts(role, t)).collect();
-        let views = tensors.iter().map(|(name, data)| {
-            let view = TensorView::new(Dtype::F32, vec![data.len() / 4], data);
-            (name, view.expect("four bytes for each number"))
+        let checksums = tensors.iter().map(|(name, _, data)| (name.clone(), crc32fast::hash(data))).collect();
+        let progress = Progress { checksums, ..self.progress.clone() };
+        let views = tensors.iter().map(|(name, dtype, data)| {
+            let bytes = if *dtype == Dtype::F16 { 2 } else { 4 };
+            let view = TensorView::new(*dtype, vec![data.len() / bytes], data);
+            (name, view.expect("as many bytes as the type has for each number"))
         });
-        let progress = serde_json::to_string(&self.progress).expect("plain numbers can be written");
+        let progress = serde_json::to_string(&progress).expect("plain numbers can be written");
         let meta = [("progress".to_owned(), progress)].into_iter().collect();
-        let data = safetensors::serialize(views, Some(meta))
-            .map_err(|e| io(std::io::Error::other(e.to_string())))?;
-        write_atomically(path, &data).map_err(io)
+        safetensors::serialize(views, Some(meta)).map_err(|e| std::io::Error::other(e.to_string()))
     }
 
     /// Reads a file that [`Checkpoint::save`] wrote.
     ///
     /// # Errors
-    /// When it can't be read, or is not such a file.
+    /// When it can't be read, is larger than [`MOST_BYTES`], or is no whole checkpoint.
     pub fn load(path: &Path) -> Result<Self, CheckpointError> {
-        let data =
-            std::fs::read(path).map_err(|source| CheckpointError::Io { path: path.to_owned(), source })?;
-        let wrong = |expected: &str, found: String| CheckpointError::Content {
+        let data = read_bounded(path, MOST_BYTES)
+            .map_err(|source| CheckpointError::Io { path: path.to_owned(), source })?;
+        read(&data).map_err(|Wrong { expected, found }| CheckpointError::Content {
             path: path.to_owned(),
-            expected: expected.into(),
+            expected,
             found,
-        };
-        let not_safe = |e: safetensors::SafeTensorError| wrong("a safetensors file", e.to_string());
-        let (_, meta) = SafeTensors::read_metadata(&data).map_err(not_safe)?;
-        let text = meta.metadata().as_ref().and_then(|m| m.get("progress"));
-        let text = text.ok_or_else(|| wrong("metadata `progress`", "none".into()))?;
-        let progress: Progress =
-            serde_json::from_str(text).map_err(|e| wrong("metadata `progress`", e.to_string()))?;
-        if progress.format != FORMAT {
-            return Err(wrong("format 1", progress.format.to_string()));
-        }
-        let tensors = SafeTensors::deserialize(&data).map_err(not_safe)?;
-        let mut networks = HashMap::new();
-        for (role, (sizes, steps)) in &progress.sizes {
-            if sizes.len() < 2 || sizes.iter().any(|s| *s == 0 || *s > 1 << 14) {
-                return Err(wrong("sizes of a network", format!("{sizes:?} for {role}")));
-            }
-            let mut network = Network::zeros(sizes);
-            let count = network.parameters.len();
-            let read = |part: &str| {
-                let name = format!("{role}.{part}");
-                let view =
-                    tensors.tensor(&name).map_err(|e| wrong(&format!("tensor {name}"), e.to_string()))?;
-                floats(&view, count).ok_or_else(|| {
-                    wrong(&format!("{count} finite numbers in {name}"), format!("{:?}", view.shape()))
-                })
-            };
-            network.parameters = read("parameters")?;
-            let adam = match *steps {
-                0 => Adam::new(count),
-                steps => Adam { mean: read("mean")?, square: read("square")?, steps },
-            };
-            networks.insert(role.clone(), Trained { network, adam });
-        }
-        Ok(Self { networks, progress })
+        })
     }
 
     /// The network of this role.
@@ -192,33 +222,6 @@ impl Checkpoint {
             found: "none".into(),
         })
     }
-}
-
-/// Writes a file so that it is there whole or not at all.
-///
-/// # Errors
-/// When the folder can't be written.
-pub fn write_atomically(path: &Path, data: &[u8]) -> std::io::Result<()> {
-    let beside = path.with_extension("partial");
-    std::fs::write(&beside, data)?;
-    std::fs::rename(&beside, path)
-}
-
-/// Little-endian bytes of single-precision numbers.
-#[must_use]
-pub fn bytes(values: &[f32]) -> Vec<u8> {
-    values.iter().flat_map(|v| v.to_le_bytes()).collect()
-}
-
-/// The numbers of a tensor, if they are `count` finite single-precision ones.
-#[must_use]
-pub fn floats(view: &TensorView<'_>, count: usize) -> Option<Vec<f32>> {
-    if view.dtype() != Dtype::F32 || view.data().len() != 4 * count {
-        return None;
-    }
-    let word = |b: &[u8]| f32::from_le_bytes([b[0], b[1], b[2], b[3]]);
-    let values: Vec<f32> = view.data().chunks_exact(4).map(word).collect();
-    values.iter().all(|v| v.is_finite()).then_some(values)
 }
 
 #[cfg(test)]

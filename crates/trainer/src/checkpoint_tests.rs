@@ -24,7 +24,7 @@ fn a_slim_checkpoint_keeps_the_parameters_alone() {
     let mut with_mean = checkpoint();
     let mean = Network::new(&[3, 4, 2], 1.0, &mut Rng::new(9, 9));
     let trained = Trained { network: mean.clone(), adam: Adam::new(26) };
-    with_mean.networks.insert("average".into(), trained);
+    with_mean.networks.insert("ema".into(), trained);
     with_mean.slim().save(&path).unwrap();
     let back = Checkpoint::load(&path).unwrap();
     assert_eq!(back.networks["actor"].network, mean);
@@ -43,4 +43,80 @@ fn a_cut_or_foreign_file_is_refused() {
         assert!(Checkpoint::load(&path).is_err(), "{len} bytes");
     }
     assert!(matches!(Checkpoint::load(&folder.path().join("b")), Err(CheckpointError::Io { .. })));
+}
+
+/// A file with this metadata, in the layout of version 1, and one tensor of four numbers.
+fn with_metadata(folder: &Path, sizes: &str, role: &str) -> PathBuf {
+    let data = bytes(&[1.0, 2.0, 3.0, 4.0]);
+    let view = TensorView::new(Dtype::F32, vec![4], &data).unwrap();
+    let progress = format!(
+        r#"{{"format":1,"seed":1,"samples":2,"secs":3.0,"actor_rate":0.1,"rng":{{"state":1,"stream":1}},"sizes":{sizes}}}"#
+    );
+    let meta = [("progress".to_owned(), progress)].into_iter().collect();
+    let written = safetensors::serialize([(format!("{role}.parameters"), view)], Some(meta)).unwrap();
+    let path = folder.join("a.safetensors");
+    std::fs::write(&path, written).unwrap();
+    path
+}
+
+#[test]
+fn version_1_loads_with_the_roles_of_today() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = with_metadata(folder.path(), r#"{"walk.average":[[3,1],0]}"#, "walk.average");
+    let loaded = Checkpoint::load(&path).unwrap();
+    assert_eq!(loaded.networks["walk.ema"].network.parameters, [1.0, 2.0, 3.0, 4.0]);
+    assert_eq!(loaded.progress.learning_rate, 0.1);
+}
+
+#[test]
+fn sizes_are_compared_with_the_tensors_before_anything_is_allocated() {
+    let folder = tempfile::tempdir().unwrap();
+    // 20 GB and far beyond: allocating this would end the process.
+    for sizes in [
+        "[16384,16384,16384]",
+        "[1,16384,16384,16384,16384,16384,1]",
+        "[18446744073709551615,2]",
+        "[3]",
+        "[]",
+    ] {
+        let path = with_metadata(folder.path(), &format!(r#"{{"actor":[{sizes},0]}}"#), "actor");
+        let error = Checkpoint::load(&path).unwrap_err();
+        assert!(matches!(error, CheckpointError::Content { .. }), "{sizes}: {error}");
+    }
+    let many: Vec<String> = (0..300).map(|i| format!(r#""a{i}":[[3,1],0]"#)).collect();
+    let path = with_metadata(folder.path(), &format!("{{{}}}", many.join(",")), "actor");
+    assert!(Checkpoint::load(&path).unwrap_err().to_string().contains("256 networks"));
+}
+
+#[test]
+fn a_flipped_bit_is_found() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("a.safetensors");
+    checkpoint().save(&path).unwrap();
+    let mut data = std::fs::read(&path).unwrap();
+    let last = data.len() - 1;
+    data[last] ^= 1;
+    std::fs::write(&path, data).unwrap();
+    assert!(Checkpoint::load(&path).unwrap_err().to_string().contains("written bytes"));
+}
+
+#[test]
+fn a_slim_checkpoint_holds_discriminators_in_half_precision() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("a.safetensors");
+    let mut with_discriminator = checkpoint();
+    let network = Network::new(&[40, 30, 1], 1.0, &mut Rng::new(9, 9));
+    let count = network.parameters.len();
+    let trained = Trained { network: network.clone(), adam: Adam::new(count) };
+    with_discriminator.networks.insert("walk.discriminator".into(), trained);
+    let [whole, slim] = [with_discriminator.clone(), with_discriminator.slim()].map(|checkpoint| {
+        checkpoint.save(&path).unwrap();
+        (std::fs::metadata(&path).unwrap().len(), Checkpoint::load(&path).unwrap())
+    });
+    assert_eq!(whole.1.networks["walk.discriminator"].network, network);
+    let halved = &slim.1.networks["walk.discriminator"].network;
+    let worst =
+        halved.parameters.iter().zip(&network.parameters).map(|(a, b)| (a - b).abs()).fold(0.0, f32::max);
+    assert!(worst > 0.0 && worst < 1e-3, "{worst}");
+    assert!(slim.0 + 2 * (count as u64) < whole.0, "{} after {}", slim.0, whole.0);
 }

@@ -1,12 +1,10 @@
-//! The paper's cost table: multiply-adds of a control step and the time they take through policy-core.
+//! The paper's cost table: multiply-adds of a control step of the humanoid, and their time in policy-core.
 
 use std::hint::black_box;
 use std::time::Instant;
 
-use policy_core::{
-    Arithmetic, Blend, BlendEvaluator, BlendMode, DOF_COUNT, Layer, Mlp, MlpError, MlpScratch,
-    OBSERVATION_LEN, POLICY_INPUT_LEN,
-};
+use policy_core::training::{Layer, MlpError};
+use policy_core::{Arithmetic, Blend, BlendEvaluator, BlendMode, Mlp, MlpScratch, PolicyId, Skeleton};
 
 use crate::Rng;
 use crate::training::POLICY_HIDDEN;
@@ -44,18 +42,31 @@ fn random_mlp(widths: &[usize], rng: &mut Rng) -> Result<Mlp, MlpError> {
 /// When policy-core refuses a network of these sizes.
 pub fn costs(repeats: usize) -> Result<Vec<Cost>, MlpError> {
     let mut rng = Rng::new(1, 1);
-    let ours = vec![POLICY_INPUT_LEN, POLICY_HIDDEN[0], POLICY_HIDDEN[1], DOF_COUNT];
+    let skeleton = Skeleton::humanoid();
+    let [observation, actions] = [skeleton.observation_len(), skeleton.joint_count()];
+    let [first, second] = POLICY_HIDDEN;
+    let ours = vec![skeleton.policy_input_len(), first, second, actions];
     let policies = [random_mlp(&ours, &mut rng)?, random_mlp(&ours, &mut rng)?];
     let one = policies[0].multiply_adds();
     let mut table = Vec::new();
     for (name, blend, mode, count) in [
-        ("one policy", Blend::single(0), BlendMode::Parameters, 1),
-        ("parameter blend of two", Blend::between(0, 1, 0.4), BlendMode::Parameters, 2),
-        ("action blend of two", Blend::between(0, 1, 0.4), BlendMode::Actions, 2),
+        ("one policy", Blend::single(PolicyId::new(0)), BlendMode::Parameters, 1),
+        (
+            "parameter blend of two",
+            Blend::between(PolicyId::new(0), PolicyId::new(1), 0.4),
+            BlendMode::Parameters,
+            2,
+        ),
+        (
+            "action blend of two",
+            Blend::between(PolicyId::new(0), PolicyId::new(1), 0.4),
+            BlendMode::Actions,
+            2,
+        ),
     ] {
         let mut evaluator = BlendEvaluator::new(&policies[0], Arithmetic::Fused, false);
-        let input = [0.3; POLICY_INPUT_LEN];
-        let mut action = [0.0; DOF_COUNT];
+        let input = vec![0.3; ours[0]];
+        let mut action = vec![0.0; actions];
         let microseconds = median(repeats, || {
             evaluator.evaluate_into(&policies, &blend, mode, black_box(&input), &mut action);
             black_box(action[0]);
@@ -64,9 +75,9 @@ pub fn costs(repeats: usize) -> Result<Vec<Cost>, MlpError> {
         table.push(Cost { name: name.into(), networks, multiply_adds: count * one, microseconds });
     }
     for (name, widths) in [
-        ("ASE [1024, 512]", vec![POLICY_INPUT_LEN, 1024, 512, LATENT_LEN]),
-        ("ASE [512, 256]", vec![POLICY_INPUT_LEN, 512, 256, LATENT_LEN]),
-        ("ASE [1024, 1024, 512]", vec![OBSERVATION_LEN + LATENT_LEN, 1024, 1024, 512, DOF_COUNT]),
+        ("ASE [1024, 512]", vec![ours[0], 1024, 512, LATENT_LEN]),
+        ("ASE [512, 256]", vec![ours[0], 512, 256, LATENT_LEN]),
+        ("ASE [1024, 1024, 512]", vec![observation + LATENT_LEN, 1024, 1024, 512, actions]),
     ] {
         let network = random_mlp(&widths, &mut rng)?;
         let mut scratch = MlpScratch::for_mlp(&network);

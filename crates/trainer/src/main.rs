@@ -1,6 +1,7 @@
 //! `trainer`: trains skills, measures them and binds them into a character pack.
 
 use std::path::PathBuf;
+use std::process::ExitCode;
 
 use anyhow::{Context, Result};
 use clap::{Parser, Subcommand};
@@ -8,7 +9,7 @@ use physics_bridge::Model;
 use trainer::clip::ClipFolder;
 use trainer::env::Normalisers;
 use trainer::normaliser_file;
-use trainer::workplace::Workplace;
+use trainer::workspace::{Workspace, newest_or_kept};
 
 mod cli;
 
@@ -59,17 +60,32 @@ enum Verb {
     View(cli::view::Arguments),
 }
 
-fn main() -> Result<()> {
-    // Whoever reads no further, as `head`, ends the program without a word.
+/// Runs a verb. Exit codes: 0 for success, 1 for an error, 2 for wrong arguments, 128 and the signal's number for a
+/// training that a signal stopped.
+fn main() -> ExitCode {
+    // A reader that closes the pipe ends the program quietly.
     sigpipe::reset();
-    let arguments = Arguments::parse();
-    match &arguments.verb {
-        Verb::Train(train) => cli::train::run(&arguments.workplace()?, train),
-        Verb::Pack(verb) => {
-            let checkpoint = |skill: &str| arguments.checkpoint(skill);
-            cli::pack::run(&arguments.model()?, &arguments.normalisers()?, &checkpoint, verb)
+    match run(&Arguments::parse()) {
+        Ok(code) => code,
+        Err(error) => {
+            cli::output::complain(&error);
+            ExitCode::FAILURE
         }
-        Verb::Keep(verb) => cli::keep::run(&arguments.normalisers()?, &arguments.runs, &arguments.kept, verb),
+    }
+}
+
+fn run(arguments: &Arguments) -> Result<ExitCode> {
+    let done = match &arguments.verb {
+        Verb::Train(train) => return cli::train::run(&arguments.workspace()?, train),
+        Verb::Pack(verb) => {
+            let newest = |skill: &str| newest_or_kept(&arguments.runs, &arguments.kept, skill);
+            let model = arguments.model()?;
+            cli::pack::run(&model, &arguments.normalisers(&model)?, &newest, verb)
+        }
+        Verb::Keep(verb) => {
+            let normalisers = arguments.normalisers(&arguments.model()?)?;
+            cli::keep::run(&normalisers, &arguments.runs, &arguments.kept, verb)
+        }
         Verb::Average(verb) => cli::average::run(verb),
         Verb::Evaluate(verb) => {
             let clips = arguments.clips().ok();
@@ -85,7 +101,8 @@ fn main() -> Result<()> {
             let (model, clips) = (arguments.model()?, arguments.clips()?);
             cli::normaliser::run(&model, &clips, &arguments.recipes, &arguments.normaliser_path(), verb)
         }
-    }
+    };
+    done.map(|()| ExitCode::SUCCESS)
 }
 
 impl Arguments {
@@ -101,27 +118,22 @@ impl Arguments {
         self.runs.join("normaliser.safetensors")
     }
 
-    fn normalisers(&self) -> Result<Normalisers> {
+    fn normalisers(&self, model: &Model) -> Result<Normalisers> {
         let (own, kept) = (self.normaliser_path(), self.kept.join("normaliser.safetensors"));
-        normaliser_file::load(if own.exists() || !kept.exists() { &own } else { &kept })
+        normaliser_file::load(if own.exists() || !kept.exists() { &own } else { &kept }, model.skeleton())
             .context("run `trainer normaliser` first: all skills share one normaliser")
     }
 
-    /// A skill's own checkpoint, else the kept one.
-    fn checkpoint(&self, skill: &str) -> PathBuf {
-        let own = self.runs.join(skill).join("checkpoint.safetensors");
-        let kept = self.kept.join(format!("{skill}.safetensors"));
-        if !own.exists() && kept.exists() { kept } else { own }
-    }
-
-    fn workplace(&self) -> Result<Workplace> {
-        Ok(Workplace {
+    fn workspace(&self) -> Result<Workspace> {
+        let model = self.model()?;
+        Ok(Workspace {
             recipes: self.recipes.clone(),
             runs: self.runs.clone(),
             kept: self.kept.clone(),
             clips: self.clips()?,
-            model: self.model()?,
-            normalisers: self.normalisers()?,
+            normalisers: self.normalisers(&model)?,
+            model,
+            parents: None,
         })
     }
 }

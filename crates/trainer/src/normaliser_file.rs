@@ -2,25 +2,34 @@
 
 use std::path::Path;
 
-use policy_core::{FRAME_LEN, Normaliser, OBSERVATION_LEN};
+use policy_core::Skeleton;
+use policy_core::training::Normaliser;
 use safetensors::tensor::{Dtype, SafeTensors, TensorView};
 
-use crate::checkpoint::{CheckpointError, bytes, floats, write_atomically};
+use crate::checkpoint::{CheckpointError, bytes, floats};
 use crate::env::Normalisers;
+use crate::storage::{read_bounded, write_atomically};
+use crate::text::quoted;
 
-const NAMES: [(&str, usize); 2] = [("observation", OBSERVATION_LEN), ("discriminator", FRAME_LEN)];
+const NAMES: [&str; 2] = ["observation", "discriminator"];
 
-/// Reads means and deviations of observations and discriminator frames.
+/// Largest file, bytes.
+const MOST_BYTES: u64 = 1 << 20;
+
+/// Reads means and deviations of observations and discriminator frames of a skeleton.
 ///
 /// # Errors
 /// When the file can't be read or doesn't hold them.
-pub fn load(path: &Path) -> Result<Normalisers, CheckpointError> {
-    let data = std::fs::read(path).map_err(|source| CheckpointError::Io { path: path.to_owned(), source })?;
-    let wrong =
-        |expected: String, found: String| CheckpointError::Content { path: path.to_owned(), expected, found };
+pub fn load(path: &Path, skeleton: &Skeleton) -> Result<Normalisers, CheckpointError> {
+    let data = read_bounded(path, MOST_BYTES)
+        .map_err(|source| CheckpointError::Io { path: path.to_owned(), source })?;
+    let wrong = |expected: String, found: String| {
+        let found = quoted(&found);
+        CheckpointError::Content { path: path.to_owned(), expected, found }
+    };
     let tensors =
         SafeTensors::deserialize(&data).map_err(|e| wrong("a safetensors file".into(), e.to_string()))?;
-    let read = |(name, len): (&str, usize)| {
+    let read = |name: &str, len: usize| {
         let part = |part: &str| {
             let name = format!("{name}.{part}");
             let view = tensors.tensor(&name).map_err(|e| wrong(format!("tensor {name}"), e.to_string()))?;
@@ -31,7 +40,11 @@ pub fn load(path: &Path) -> Result<Normalisers, CheckpointError> {
         Normaliser::from_mean_and_deviation(&part("mean")?, &part("deviation")?)
             .map_err(|e| wrong(format!("a normaliser {name}"), e.to_string()))
     };
-    Ok(Normalisers { observation: read(NAMES[0])?, frame: read(NAMES[1])? })
+    let [observation, frame] = NAMES;
+    Ok(Normalisers {
+        observation: read(observation, skeleton.observation_len())?,
+        frame: read(frame, skeleton.frame_len())?,
+    })
 }
 
 /// Writes the file.
@@ -41,7 +54,7 @@ pub fn load(path: &Path) -> Result<Normalisers, CheckpointError> {
 pub fn save(path: &Path, normalisers: &Normalisers) -> Result<(), CheckpointError> {
     let io = |source| CheckpointError::Io { path: path.to_owned(), source };
     let mut tensors = Vec::new();
-    for ((name, _), n) in NAMES.iter().zip([&normalisers.observation, &normalisers.frame]) {
+    for (name, n) in NAMES.iter().zip([&normalisers.observation, &normalisers.frame]) {
         tensors.push((format!("{name}.mean"), bytes(n.mean())));
         tensors.push((format!("{name}.deviation"), bytes(n.deviation())));
     }

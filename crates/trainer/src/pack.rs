@@ -3,20 +3,23 @@
 use std::path::{Path, PathBuf};
 
 use physics_bridge::Model;
-use policy_core::{
-    ActionScaling, BODY_NAMES, CharacterPack, DISCRIMINATOR_LAYOUT, DiscriminatorEntry, JOINT_NAMES, Layer,
-    Manifest, Mlp, MlpError, OBSERVATION_LAYOUT, PACK_FORMAT, PACK_VERSION, PackError, PackTensors,
-    PolicyEntry,
+use policy_core::format::{
+    DISCRIMINATOR_LAYOUT, DiscriminatorEntry, Manifest, OBSERVATION_LAYOUT, PACK_FORMAT, PACK_VERSION,
+    PolicyEntry, SkeletonEntry, Storage,
 };
+use policy_core::training::{ActionScaling, Layer, MlpError, PackTensors};
+use policy_core::{CharacterPack, Mlp, PackError};
 
+mod distil;
 mod plan;
+mod rollouts;
 
+pub use distil::{Agreement, DISTILLED_HIDDEN, distil};
 pub use plan::{PackPlan, PlannedPolicy};
 
-use crate::checkpoint::{Checkpoint, CheckpointError};
+use crate::checkpoint::{ACTOR, Checkpoint, CheckpointError, DISCRIMINATOR, EMA};
 use crate::env::Normalisers;
 use crate::nn::Network;
-use crate::training::AVERAGE;
 
 /// Why a pack can't be bound.
 #[derive(Debug, thiserror::Error)]
@@ -58,7 +61,7 @@ pub enum BindError {
 
 /// Where a skill comes from and its networks.
 #[derive(Clone, Debug)]
-pub struct Ingredient {
+pub struct TrainedSkill {
     /// Name of the skill.
     pub skill: String,
     /// Its policy.
@@ -69,7 +72,7 @@ pub struct Ingredient {
     pub origin: String,
 }
 
-impl Ingredient {
+impl TrainedSkill {
     /// The skill out of a checkpoint of its own run, or of one that trained it together with others; `path` is named in
     /// errors.
     ///
@@ -82,12 +85,12 @@ impl Ingredient {
         let recipe = if together { "joint recipe" } else { "recipe" };
         Ok(Self {
             skill: skill.into(),
-            // The running mean where there is one: old checkpoints have the policy alone.
-            actor: match loaded.networks.get(&role(AVERAGE)) {
-                Some(average) => average.network.clone(),
-                None => loaded.network(&role("actor"), path)?.network.clone(),
+            // The moving average where there is one: old checkpoints have the policy alone.
+            actor: match loaded.networks.get(&role(EMA)) {
+                Some(ema) => ema.network.clone(),
+                None => loaded.network(&role(ACTOR), path)?.network.clone(),
             },
-            discriminator: loaded.network(&role("discriminator"), path)?.network.clone(),
+            discriminator: loaded.network(&role(DISCRIMINATOR), path)?.network.clone(),
             origin: format!(
                 "{recipe} {skill}, seed {}, {} samples, {:.0} s",
                 progress.seed, progress.samples, progress.secs
@@ -106,67 +109,43 @@ impl Ingredient {
     /// True when a checkpoint is of a run that trained this skill together with others.
     #[must_use]
     pub fn is_in(skill: &str, checkpoint: &Checkpoint) -> bool {
-        checkpoint.networks.contains_key(&format!("{skill}.actor"))
+        checkpoint.networks.contains_key(&format!("{skill}.{ACTOR}"))
     }
 }
 
-/// Binds the skills of `plan` into a pack.
+/// Binds the skills of `plan` into a pack, with the body of `model` and, if there is one, a binary glTF mesh.
 ///
 /// # Errors
-/// When a skill of the plan is no ingredient, or policy-core refuses the parts.
+/// When a skill of the plan is not trained, or policy-core refuses the parts.
 pub fn bind(
     plan: &PackPlan,
-    ingredients: &[Ingredient],
+    trained: &[TrainedSkill],
     normalisers: &Normalisers,
     model: &Model,
+    mesh: Option<Vec<u8>>,
 ) -> Result<CharacterPack, BindError> {
-    let (low, high) = model.joint_limits();
-    let scaling = ActionScaling::from_joint_limits(low, high).map_err(PackError::from)?;
-    let mut judges: Vec<&str> = plan.skills.iter().filter_map(|s| s.discriminator.as_deref()).collect();
-    judges.sort_unstable();
-    judges.dedup();
-    let find = |name: &str| {
-        ingredients.iter().find(|i| i.skill == name).ok_or_else(|| CheckpointError::Content {
-            path: PathBuf::from(name),
-            expected: "a trained skill of this name".into(),
-            found: "none".into(),
-        })
-    };
-    let mut policies = Vec::new();
-    let mut entries = Vec::new();
-    for planned in &plan.policies {
-        let ingredient = find(&planned.name)?;
-        policies.push(mlp(&ingredient.actor, &planned.name, "policy")?);
-        entries.push(PolicyEntry {
-            name: planned.name.clone(),
-            layers: ingredient.actor.sizes().to_vec(),
-            fall_height: planned.fall_height,
-            speed_mps: planned.speed_mps,
-            origin: ingredient.origin.clone(),
-        });
-    }
-    let mut discriminators = Vec::new();
-    let mut judge_entries = Vec::new();
-    for name in judges {
-        let network = &find(name)?.discriminator;
-        discriminators.push(mlp(network, name, "discriminator")?);
-        judge_entries.push(DiscriminatorEntry { name: name.into(), layers: network.sizes().to_vec() });
-    }
+    let skeleton = model.skeleton();
+    let scaling = ActionScaling::from_skeleton(skeleton);
+    let (policies, entries) = policies(plan, trained)?;
+    let (discriminators, discriminator_entries) = discriminators(plan, trained)?;
     let manifest = Manifest {
         format: PACK_FORMAT.into(),
         version: PACK_VERSION,
         character: plan.character.clone(),
-        control_hz: physics_bridge::CONTROL_HZ as f32,
+        control_hz: model.control_hz(),
         observation: OBSERVATION_LAYOUT.into(),
         discriminator: DISCRIMINATOR_LAYOUT.into(),
-        bodies: BODY_NAMES.iter().map(|n| (*n).to_owned()).collect(),
-        joints: JOINT_NAMES.iter().map(|n| (*n).to_owned()).collect(),
+        skeleton: SkeletonEntry::from(skeleton.as_ref()),
+        actuation: Some(model.actuation()),
+        credits: plan.credits.clone(),
+        mjcf: Some(model.mjcf().to_owned()),
+        checksum: None,
         action_centre: scaling.centre().to_vec(),
         action_gain: scaling.gain().to_vec(),
         policies: entries,
         edges: plan.edges.clone(),
         paths: plan.paths.clone(),
-        discriminators: judge_entries,
+        discriminators: discriminator_entries,
         skills: plan.skills.clone(),
         recovery: plan.recovery.clone(),
     };
@@ -175,8 +154,53 @@ pub fn bind(
         discriminators,
         observation_normaliser: normalisers.observation.clone(),
         discriminator_normaliser: normalisers.frame.clone(),
+        mesh,
     };
     Ok(CharacterPack::from_parts(manifest, tensors)?)
+}
+
+/// The trained skill of this name.
+fn find<'a>(trained: &'a [TrainedSkill], name: &str) -> Result<&'a TrainedSkill, CheckpointError> {
+    trained.iter().find(|skill| skill.skill == name).ok_or_else(|| CheckpointError::Content {
+        path: PathBuf::from(name),
+        expected: "a trained skill of this name".into(),
+        found: "none".into(),
+    })
+}
+
+/// The policies of a plan.
+fn policies(plan: &PackPlan, trained: &[TrainedSkill]) -> Result<(Vec<Mlp>, Vec<PolicyEntry>), BindError> {
+    let mut all = (Vec::new(), Vec::new());
+    for planned in &plan.policies {
+        let skill = find(trained, &planned.name)?;
+        all.0.push(mlp(&skill.actor, &planned.name, "policy")?);
+        all.1.push(PolicyEntry {
+            name: planned.name.clone(),
+            layers: skill.actor.sizes().to_vec(),
+            fall_height: planned.fall_height,
+            speed_mps: planned.speed_mps,
+            origin: skill.origin.clone(),
+        });
+    }
+    Ok(all)
+}
+
+/// The discriminators that end a plan's skills, each once.
+fn discriminators(
+    plan: &PackPlan,
+    trained: &[TrainedSkill],
+) -> Result<(Vec<Mlp>, Vec<DiscriminatorEntry>), BindError> {
+    let mut names: Vec<&str> = plan.skills.iter().filter_map(|s| s.discriminator.as_deref()).collect();
+    names.sort_unstable();
+    names.dedup();
+    let mut all = (Vec::new(), Vec::new());
+    for name in names {
+        let network = &find(trained, name)?.discriminator;
+        all.0.push(mlp(network, name, "discriminator")?);
+        let layers = network.sizes().to_vec();
+        all.1.push(DiscriminatorEntry { name: name.into(), layers, storage: Storage::F16 });
+    }
+    Ok(all)
 }
 
 /// A network as policy-core evaluates it.

@@ -5,6 +5,8 @@ use std::path::Path;
 use anyhow::{Context, Result};
 use plotters::prelude::*;
 
+use crate::storage::write_atomically;
+
 /// Curves that are drawn: column of the metrics, and what it says.
 const CURVES: [(&str, &str); 6] = [
     ("style", "style reward"),
@@ -26,11 +28,17 @@ pub fn draw(metrics: &Path, svg: &Path) -> Result<()> {
     let header: Vec<&str> = lines.next().unwrap_or_default().split(',').collect();
     let rows: Vec<Vec<f64>> =
         lines.map(|l| l.split(',').map(|v| v.parse().unwrap_or(f64::NAN)).collect()).collect();
-    let root = SVGBackend::new(svg, (1000, 900)).into_drawing_area();
+    let mut drawn = String::new();
+    draw_curves(&header, &rows, &mut drawn)?;
+    write_atomically(svg, drawn.as_bytes()).with_context(|| format!("cannot write {}", svg.display()))
+}
+
+fn draw_curves(header: &[&str], rows: &[Vec<f64>], svg: &mut String) -> Result<()> {
+    let root = SVGBackend::with_string(svg, (1000, 900)).into_drawing_area();
     root.fill(&WHITE)?;
     for ((name, caption), area) in CURVES.iter().zip(root.split_evenly((3, 2))) {
         let Some(column) = header.iter().position(|h| h == name) else { continue };
-        let points = smoothed(&rows, column);
+        let points = smoothed(rows, column);
         let most = points.iter().map(|p| p.1).fold(0.0, f64::max).max(1e-6) * 1.05;
         let end = points.last().map_or(1.0, |p| p.0).max(1e-6);
         let mut chart = ChartBuilder::on(&area)

@@ -1,12 +1,21 @@
-//! A run on disk: `runs/<skill>/` with the recipe, the seed, metrics and checkpoints; and the loop that fills it.
+//! A run: `runs/<skill>/` with the recipe, the seed, metrics and checkpoints, and the iterations that fill it.
 
 use std::collections::HashMap;
 use std::fmt::Write as _;
 use std::io::Write as _;
-use std::path::PathBuf;
 use std::time::Instant;
 
-use anyhow::{Result, bail};
+use anyhow::{Context, Result};
+
+mod error;
+mod folder;
+mod lock;
+
+pub use error::RunError;
+pub use folder::{
+    CHECKPOINT, Existing, Loaded, METRICS_FILE, PREVIOUS, RunFolder, holds_a_run, newest_checkpoint,
+};
+pub use lock::{Holder, LOCK_FILE, RunLock};
 
 use crate::checkpoint::{Checkpoint, Trained};
 use crate::nn::Adam;
@@ -14,8 +23,8 @@ use crate::plot;
 use crate::training::{IterationReport, Training};
 
 /// Columns of `metrics.csv`.
-pub const METRICS: &str = "samples,secs,rate,style,task,reward,speed_error,episode_ticks,failed,kl,actor_rate,\
-                           value_error,clipped,discriminator_accuracy,cross_entropy,squared_gradient,distance,imitation";
+pub const METRICS: &str = "samples,secs,rate,style,task,reward,speed_error,episode_ticks,failed,kl,learning_rate,\
+                           value_error,clipped,discriminator_accuracy,cross_entropy,squared_gradient,distance,tracking";
 
 /// Iterations between checkpoints.
 const CHECKPOINT_EVERY: u64 = 25;
@@ -25,18 +34,26 @@ const CHECKPOINT_EVERY: u64 = 25;
 pub struct Run {
     /// What learns.
     pub training: Training,
-    /// Where it is kept.
-    pub folder: PathBuf,
+    /// Where it is kept. The run holds the folder's lock.
+    pub folder: RunFolder,
     /// Its seed.
     pub seed: u64,
     /// Wall-clock seconds spent.
     pub secs: f64,
+    /// What the user should know about how it was made ready.
+    pub notes: Vec<String>,
     iterations: u64,
 }
 
 impl Run {
-    pub(crate) fn new(training: Training, folder: PathBuf, seed: u64, secs: f64) -> Self {
-        Self { training, folder, seed, secs, iterations: 0 }
+    pub(crate) fn new(
+        training: Training,
+        folder: RunFolder,
+        seed: u64,
+        secs: f64,
+        notes: Vec<String>,
+    ) -> Self {
+        Self { training, folder, seed, secs, notes, iterations: 0 }
     }
 
     /// True when all phases are over.
@@ -57,12 +74,16 @@ impl Run {
         self.iterations += 1;
         let mut learned = self.training.learner.actors.iter().flat_map(|a| &a.network.parameters);
         if !learned.all(|p| p.is_finite()) {
-            bail!("after {} samples: expected finite parameters, found others", self.training.samples);
+            return Err(RunError::NotFinite { samples: self.training.samples }.into());
         }
         let rate = (self.training.samples - before) as f64 / secs;
-        let path = self.folder.join("metrics.csv");
-        let mut file = std::fs::OpenOptions::new().append(true).create(true).open(&path)?;
-        writeln!(file, "{}", metrics_line(self.training.samples, self.secs, rate, &report))?;
+        let path = self.folder.path().join(METRICS_FILE);
+        let line = metrics_line(self.training.samples, self.secs, rate, &report);
+        let append = || -> std::io::Result<()> {
+            let mut file = std::fs::OpenOptions::new().append(true).create(true).open(&path)?;
+            file.write_all(format!("{line}\n").as_bytes())
+        };
+        append().with_context(|| format!("cannot write {}", path.display()))?;
         if self.iterations.is_multiple_of(CHECKPOINT_EVERY) || self.is_done() {
             self.save()?;
         }
@@ -81,15 +102,16 @@ impl Run {
             networks.insert(role, Trained { network: network.clone(), adam });
         }
         let progress = (self.seed, training.samples, self.secs);
-        let (rate, rng) = (training.learner.actor_rate(), training.learner.rng);
+        let (rate, rng) = (training.learner.learning_rate(), training.learner.rng);
         let checkpoint = Checkpoint::new(networks, progress, rate, rng);
-        checkpoint.save(&self.folder.join("checkpoint.safetensors"))?;
-        plot::draw(&self.folder.join("metrics.csv"), &self.folder.join("metrics.svg"))
+        self.folder.save(&checkpoint)?;
+        let folder = self.folder.path();
+        plot::draw(&folder.join(METRICS_FILE), &folder.join("metrics.svg"))
     }
 }
 
 fn metrics_line(samples: u64, secs: f64, rate: f64, report: &IterationReport) -> String {
-    let (p, u, d) = (&report.population, &report.update, &report.discriminator);
+    let (p, u, d) = (&report.episodes, &report.update, &report.discriminator);
     let episodes = f64::from(p.episodes.max(1));
     let ticks = p.ticks.max(1) as f64;
     let mut line = format!("{samples},{secs:.1},{rate:.0}");
@@ -101,14 +123,14 @@ fn metrics_line(samples: u64, secs: f64, rate: f64, report: &IterationReport) ->
         p.episode_ticks as f64 / episodes,
         f64::from(p.failed) / episodes,
         f64::from(u.kl),
-        f64::from(report.actor_rate),
+        f64::from(report.learning_rate),
         f64::from(u.value_error),
         f64::from(u.clipped),
         f64::from(d.accuracy),
         f64::from(d.cross_entropy),
         f64::from(d.squared_gradient),
         report.distance,
-        p.imitation / ticks,
+        p.tracking / ticks,
     ] {
         let _ = write!(line, ",{value:.6}");
     }

@@ -3,7 +3,7 @@
 use std::fmt::Write as _;
 
 use glam::Vec3;
-use policy_core::{Body, CharacterState, Heading};
+use policy_core::{BodyId, CharacterState, Heading, Skeleton};
 
 /// Pixels of a metre.
 const SCALE: f32 = 80.0;
@@ -13,6 +13,9 @@ const PITCH: f32 = 78.0;
 
 /// Height of a row, pixels.
 const ROW: f32 = 170.0;
+
+/// Tip of a foot in its frame, metres.
+const TOES: Vec3 = Vec3::new(0.13, 0.0, -0.04);
 
 /// One row of figures.
 #[derive(Clone, Debug)]
@@ -26,9 +29,9 @@ pub struct Row {
     pub fixed: bool,
 }
 
-/// Draws rows of figures. Each figure stands where its pelvis is; the right side is drawn darker than the left.
+/// Draws rows of figures. Each figure stands where its root is; the right side is drawn darker than the left.
 #[must_use]
-pub fn draw(rows: &[Row]) -> String {
+pub fn draw(skeleton: &Skeleton, rows: &[Row]) -> String {
     let columns = rows.iter().map(|r| r.states.len()).max().unwrap_or(0) as f32;
     let (width, height) = (40.0 + columns * PITCH, rows.len() as f32 * ROW);
     let mut svg = format!(
@@ -47,47 +50,57 @@ pub fn draw(rows: &[Row]) -> String {
         );
         for (column, state) in row.states.iter().enumerate() {
             let seen = if row.fixed { &row.states[0] } else { state };
-            let heading = Heading::from_rotation(seen.body(Body::Pelvis).rotation);
-            figure(&mut svg, (state, heading), 20.0 + (column as f32 + 0.5) * PITCH, floor);
+            let heading = Heading::from_rotation(seen.root().rotation);
+            figure(&mut svg, skeleton, (state, heading), 20.0 + (column as f32 + 0.5) * PITCH, floor);
         }
     }
     svg.push_str("</svg>\n");
     svg
 }
 
-/// Chains of bodies: left side, trunk, right side, the near one last.
-const CHAINS: [(&[Body], &str); 5] = [
-    (&[Body::Torso, Body::LeftUpperArm, Body::LeftLowerArm, Body::LeftHand], "#e0a060"),
-    (&[Body::Pelvis, Body::LeftThigh, Body::LeftShin, Body::LeftFoot], "#e0a060"),
-    (&[Body::Pelvis, Body::Torso, Body::Head], "#444444"),
-    (&[Body::Pelvis, Body::RightThigh, Body::RightShin, Body::RightFoot], "#3060a0"),
-    (&[Body::Torso, Body::RightUpperArm, Body::RightLowerArm, Body::RightHand], "#3060a0"),
-];
-
-fn figure(svg: &mut String, (state, heading): (&CharacterState, Heading), x: f32, floor: f32) {
-    let pelvis = state.body(Body::Pelvis);
-    let place = |point: Vec3| {
-        let local = heading.heading_from_world(point - pelvis.position);
-        (x + SCALE * local.x, floor - SCALE * (point.z - state.ground_height))
-    };
-    let on = |body: Body, offset: Vec3| {
-        let b = state.body(body);
-        place(b.position + b.rotation * offset)
-    };
-    for (chain, colour) in CHAINS {
-        let mut points: Vec<(f32, f32)> = chain.iter().map(|b| on(*b, Vec3::ZERO)).collect();
-        // Arms hang on the shoulders, feet have toes.
-        if matches!(chain[1], Body::LeftUpperArm | Body::RightUpperArm) {
-            points[0] = on(Body::Torso, Vec3::new(0.0, 0.0, 0.23));
-        }
-        if let Some(foot @ (Body::LeftFoot | Body::RightFoot)) = chain.last() {
-            points.push(on(*foot, Vec3::new(0.0, 0.0, -0.04)));
-            points.push(on(*foot, Vec3::new(0.13, 0.0, -0.04)));
-        }
-        let path: Vec<String> = points.iter().map(|(x, y)| format!("{x:.1} {y:.1}")).collect();
-        let _ = writeln!(svg, "<path d=\"M{}\" stroke=\"{colour}\" stroke-width=\"4\"/>", path.join("L"));
+/// Colour of a body by its side.
+fn colour(name: &str) -> &'static str {
+    match (name.contains("left"), name.contains("right")) {
+        (true, _) => "#e0a060",
+        (_, true) => "#3060a0",
+        _ => "#444444",
     }
-    let (hx, hy) = on(Body::Head, Vec3::new(0.0, 0.0, 0.175));
+}
+
+/// A line from each body to its parent, the left side first and the right side over the rest.
+fn figure(
+    svg: &mut String,
+    skeleton: &Skeleton,
+    (state, heading): (&CharacterState, Heading),
+    x: f32,
+    floor: f32,
+) {
+    let root = state.root();
+    let point = |position: Vec3| {
+        let local = heading.heading_from_world(position - root.position);
+        (x + SCALE * local.x, floor - SCALE * (position.z - state.ground_height))
+    };
+    let mut line = |from: Vec3, to: Vec3, colour: &str| {
+        let ((x0, y0), (x1, y1)) = (point(from), point(to));
+        let _ = writeln!(
+            svg,
+            "<path d=\"M{x0:.1} {y0:.1}L{x1:.1} {y1:.1}\" stroke=\"{colour}\" stroke-width=\"4\"/>"
+        );
+    };
+    let mut bodies: Vec<BodyId> = (0..skeleton.body_count()).map(BodyId::new).collect();
+    let name = |id: BodyId| &skeleton.body(id).name;
+    bodies.sort_by_key(|id| (name(*id).contains("right"), !name(*id).contains("left")));
+    for id in bodies {
+        let body = state.body(id);
+        if let Some(parent) = skeleton.parent(id) {
+            line(state.body(parent).position, body.position, colour(name(id)));
+        }
+        if skeleton.feet().contains(&id) {
+            line(body.position, body.position + body.rotation * TOES, colour(name(id)));
+        }
+    }
+    let head = skeleton.head().map_or(root.position, |head| state.body(head).position);
+    let (hx, hy) = point(head);
     let _ = writeln!(svg, "<circle cx=\"{hx:.1}\" cy=\"{hy:.1}\" r=\"7.5\" fill=\"#444444\"/>");
 }
 
@@ -101,8 +114,12 @@ mod tests {
 
     #[test]
     fn every_state_is_a_figure() {
-        let row = Row { caption: "a < b".into(), states: vec![CharacterState::default(); 3], fixed: false };
-        let svg = draw(&[row.clone(), Row { fixed: true, ..row }]);
+        let row = Row {
+            caption: "a < b".into(),
+            states: vec![CharacterState::new(&Skeleton::humanoid()); 3],
+            fixed: false,
+        };
+        let svg = draw(&Skeleton::humanoid(), &[row.clone(), Row { fixed: true, ..row }]);
         assert_eq!(svg.matches("<circle").count(), 6);
         assert!(svg.contains("a &lt; b") && svg.ends_with("</svg>\n"));
     }

@@ -1,28 +1,26 @@
-//! Judges of style: one discriminator for each node of a course, each with its clips. A character between two nodes is
-//! judged by both, by its blend weights; a judge learns from those that are nearly at its node.
+//! Discriminators of style: one for each node of the graph, each with its clips. A character between two nodes is scored by both,
+//! by its blend weights. A discriminator learns from the characters that are nearly at its node.
 
-use policy_core::DISCRIMINATOR_INPUT_LEN;
+use crate::amp::{DiscriminatorConfig, DiscriminatorLearner, DiscriminatorReport, style_reward};
+use crate::env::{Demonstrations, TrainingGraph};
 
-use crate::amp::{DiscriminatorLearner, DiscriminatorReport, style_reward};
-use crate::env::{Course, Demonstrations, Place};
-
-/// A judge learns from rows in which its node weighs more than this.
+/// A discriminator learns from rows in which its node weighs more than this.
 const LEARNING_WEIGHT: f32 = 0.6;
 
 /// A node's clips and the discriminator that knows them; a node that nothing acts as needs none.
 #[derive(Debug)]
-pub struct Judge {
+pub struct NodeDiscriminator {
     /// The clips.
     pub demonstrations: Demonstrations,
     /// The discriminator.
     pub discriminator: Option<DiscriminatorLearner>,
 }
 
-/// Judges in the order of a course's nodes, and then of the edges that have one half-way.
+/// Discriminators in the order of a graph's nodes, and then of the edges that have one half-way.
 #[derive(Debug)]
-pub struct Judges {
+pub struct Discriminators {
     /// One for each node, one for each of the edges in `halfway`.
-    pub judges: Vec<Judge>,
+    pub scorers: Vec<NodeDiscriminator>,
     halfway: Vec<usize>,
     rows: Vec<u32>,
     gathered: Vec<f32>,
@@ -31,28 +29,35 @@ pub struct Judges {
 }
 
 /// Edge and blend weight of every row.
-type Places<'a> = (&'a [usize], &'a [f32]);
+type Positions<'a> = (&'a [usize], &'a [f32]);
 
-impl Judges {
-    /// These judges; the last ones judge half-way along these edges.
+impl Discriminators {
+    /// These discriminators; the last ones score half-way along these edges.
     ///
     /// # Panics
-    /// When there are fewer judges than such edges.
+    /// When there are fewer discriminators than such edges.
     #[must_use]
-    pub fn new(judges: Vec<Judge>, halfway: Vec<usize>) -> Self {
-        assert!(halfway.len() <= judges.len(), "judges of edges");
+    pub fn new(scorers: Vec<NodeDiscriminator>, halfway: Vec<usize>) -> Self {
+        assert!(halfway.len() <= scorers.len(), "scorers of edges");
         let (rows, gathered, logits, style) = (Vec::new(), Vec::new(), Vec::new(), Vec::new());
-        Self { judges, halfway, rows, gathered, logits, style }
+        Self { scorers, halfway, rows, gathered, logits, style }
     }
 
     /// Clips of all nodes.
     #[must_use]
     pub fn demonstrations(&self) -> Vec<&Demonstrations> {
-        let nodes = self.judges.len() - self.halfway.len();
-        self.judges[..nodes].iter().map(|j| &j.demonstrations).collect()
+        let nodes = self.scorers.len() - self.halfway.len();
+        self.scorers[..nodes].iter().map(|j| &j.demonstrations).collect()
     }
 
-    /// Edges with a judge half-way, in the order of their judges.
+    /// Sets the hyper-parameters of all discriminators. Sizes of networks and buffers stay as they are.
+    pub fn set_config(&mut self, config: &DiscriminatorConfig) {
+        for discriminator in self.scorers.iter_mut().filter_map(|s| s.discriminator.as_mut()) {
+            discriminator.config.clone_from(config);
+        }
+    }
+
+    /// Edges with a discriminator half-way, in the order of their discriminators.
     #[must_use]
     pub fn halfway(&self) -> &[usize] {
         &self.halfway
@@ -61,39 +66,44 @@ impl Judges {
     /// Style reward of every row of discriminator inputs.
     ///
     /// # Panics
-    /// When there is not one place for each row, or an edge is not on the course.
-    pub fn style(&mut self, course: &Course, places: Places<'_>, inputs: &[f32]) -> &[f32] {
+    /// When there is not one position for each row, or an edge is not on the graph.
+    pub fn style(&mut self, graph: &TrainingGraph, positions: Positions<'_>, inputs: &[f32]) -> &[f32] {
         self.style.clear();
-        self.style.resize(places.0.len(), 0.0);
-        let nodes = self.judges.len() - self.halfway.len();
-        for (index, judge) in self.judges.iter_mut().enumerate() {
-            let Some(discriminator) = &mut judge.discriminator else { continue };
-            let weight = |place: Place| weight(course, &self.halfway, nodes, index, place);
-            rows_above(places, weight, 0.0, &mut self.rows);
+        self.style.resize(positions.0.len(), 0.0);
+        let nodes = self.scorers.len() - self.halfway.len();
+        for (index, scorer) in self.scorers.iter_mut().enumerate() {
+            let Some(discriminator) = &mut scorer.discriminator else { continue };
+            let weight = |row| weight(graph, &self.halfway, nodes, index, row);
+            rows_above(positions, weight, 0.0, &mut self.rows);
             self.gathered.clear();
-            for row in self.rows.iter().map(|r| *r as usize * DISCRIMINATOR_INPUT_LEN) {
-                self.gathered.extend_from_slice(&inputs[row..row + DISCRIMINATOR_INPUT_LEN]);
+            let width = discriminator.network.inputs();
+            for row in self.rows.iter().map(|r| *r as usize * width) {
+                self.gathered.extend_from_slice(&inputs[row..row + width]);
             }
             self.logits.resize(self.rows.len(), 0.0);
             discriminator.logits_into(&self.gathered, &mut self.logits);
             for (row, logit) in self.rows.iter().map(|r| *r as usize).zip(&self.logits) {
-                let place = Place { edge: places.0[row], t: places.1[row] };
-                self.style[row] += weight(place) * style_reward(*logit);
+                self.style[row] += weight((positions.0[row], positions.1[row])) * style_reward(*logit);
             }
         }
         &self.style
     }
 
-    /// Gradient steps of all judges; returns the mean over those that learned.
-    pub fn learn(&mut self, course: &Course, places: Places<'_>, inputs: &[f32]) -> DiscriminatorReport {
+    /// Gradient steps of all discriminators; returns the mean over those that learned.
+    pub fn learn(
+        &mut self,
+        graph: &TrainingGraph,
+        positions: Positions<'_>,
+        inputs: &[f32],
+    ) -> DiscriminatorReport {
         let mut sum = DiscriminatorReport::default();
         let mut count = 0.0;
-        let nodes = self.judges.len() - self.halfway.len();
-        for (index, judge) in self.judges.iter_mut().enumerate() {
-            let Some(discriminator) = &mut judge.discriminator else { continue };
-            let weight = |place: Place| weight(course, &self.halfway, nodes, index, place);
-            rows_above(places, weight, LEARNING_WEIGHT, &mut self.rows);
-            let report = discriminator.update(&judge.demonstrations, inputs, &self.rows);
+        let nodes = self.scorers.len() - self.halfway.len();
+        for (index, scorer) in self.scorers.iter_mut().enumerate() {
+            let Some(discriminator) = &mut scorer.discriminator else { continue };
+            let weight = |row| weight(graph, &self.halfway, nodes, index, row);
+            rows_above(positions, weight, LEARNING_WEIGHT, &mut self.rows);
+            let report = discriminator.update(&scorer.demonstrations, inputs, &self.rows);
             sum.cross_entropy += report.cross_entropy;
             sum.accuracy += report.accuracy;
             sum.squared_gradient += report.squared_gradient;
@@ -106,21 +116,33 @@ impl Judges {
     }
 }
 
-/// Weight of a judge at a place: that of its node, or how near the place is to the middle of its edge. Where an edge has a
-/// judge half-way, those of its ends weigh nothing beyond the middle.
-fn weight(course: &Course, halfway: &[usize], nodes: usize, judge: usize, place: Place) -> f32 {
-    match halfway.get(judge.wrapping_sub(nodes)) {
-        Some(edge) if *edge == place.edge => 1.0 - (2.0 * place.t - 1.0).abs(),
+/// Weight of a discriminator in a row, given by its edge and blend weight: that of its node, or how near the row is to the middle
+/// of its edge. Where an edge has a discriminator half-way, those of its ends weigh nothing beyond the middle.
+fn weight(
+    graph: &TrainingGraph,
+    halfway: &[usize],
+    nodes: usize,
+    scorer: usize,
+    (edge, t): (usize, f32),
+) -> f32 {
+    let of_node = || graph.weight(graph.position_of(edge, t), scorer);
+    match halfway.get(scorer.wrapping_sub(nodes)) {
+        Some(middle) if *middle == edge => 1.0 - (2.0 * t - 1.0).abs(),
         Some(_) => 0.0,
-        None if halfway.contains(&place.edge) => (2.0 * course.weight(place, judge) - 1.0).max(0.0),
-        None => course.weight(place, judge),
+        None if halfway.contains(&edge) => (2.0 * of_node() - 1.0).max(0.0),
+        None => of_node(),
     }
 }
 
-/// Rows at places where a judge weighs more than `least`.
-fn rows_above((edges, blend): Places<'_>, weight: impl Fn(Place) -> f32, least: f32, out: &mut Vec<u32>) {
+/// Rows at positions where a discriminator weighs more than `least`.
+fn rows_above(
+    (edges, blend): Positions<'_>,
+    weight: impl Fn((usize, f32)) -> f32,
+    least: f32,
+    out: &mut Vec<u32>,
+) {
     out.clear();
-    let heavy = |(edge, t): (&usize, &f32)| weight(Place { edge: *edge, t: *t }) > least;
+    let heavy = |(edge, t): (&usize, &f32)| weight((*edge, *t)) > least;
     out.extend(
         (0..edges.len() as u32).zip(edges.iter().zip(blend)).filter(|(_, at)| heavy(*at)).map(|(r, _)| r),
     );
@@ -129,17 +151,18 @@ fn rows_above((edges, blend): Places<'_>, weight: impl Fn(Place) -> f32, least: 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::env::{CourseNode, EnvironmentConfig};
+    use crate::env::{EnvironmentConfig, GraphNode};
 
     #[test]
-    fn the_weights_of_all_judges_sum_to_one() {
-        let node = |name: &str| CourseNode::new(name, &EnvironmentConfig::default(), 1.0);
-        let course = Course::new(["a", "b", "c"].map(node).to_vec(), vec![vec![0, 1, 2]]);
+    fn the_weights_of_all_discriminators_sum_to_one() {
+        let node = |name: &str| GraphNode::new(name, &EnvironmentConfig::default(), 1.0);
+        let graph =
+            TrainingGraph::along(["a", "b", "c"].map(node).to_vec(), &[vec![0, 1, 2]], [1.0; 2]).unwrap();
         let halfway = [0];
         for edge in 0..2 {
             for t in [0.0, 0.2, 0.5, 0.7, 1.0] {
-                let at = Place { edge, t };
-                let all: Vec<f32> = (0..4).map(|judge| weight(&course, &halfway, 3, judge, at)).collect();
+                let all: Vec<f32> =
+                    (0..4).map(|scorer| weight(&graph, &halfway, 3, scorer, (edge, t))).collect();
                 assert!((all.iter().sum::<f32>() - 1.0).abs() < 1e-6, "{edge} {t} {all:?}");
                 assert_eq!(all[3] > 0.0, edge == 0 && t > 0.0 && t < 1.0);
                 assert!(edge == 1 || t != 0.5 || all[3] == 1.0);

@@ -1,39 +1,29 @@
 //! One iteration of training: rollout, style, returns, gradient steps. The loop around it belongs to the program.
 
-use physics_bridge::{Model, ModelError, Terrain};
-use policy_core::{ActionScaling, DISCRIMINATOR_INPUT_LEN, DOF_COUNT, POLICY_INPUT_LEN};
+use std::sync::Arc;
+
+use physics_bridge::{Model, ModelError};
+use policy_core::training::ActionScaling;
+use policy_core::{BodyId, GraphPosition, Skeleton};
 
 use crate::amp::DiscriminatorReport;
-use crate::env::{Course, Demonstrations, Normalisers, Place, Population, PopulationReport, Recovery};
+use crate::checkpoint::{ACTOR, CRITIC, DISCRIMINATOR, EMA, PARENT_DISCRIMINATOR};
+use crate::env::{
+    Demonstrations, EnvContext, EnvironmentConfig, EpisodeReport, GraphNode, HandOver, Normalisers,
+    RewardTerms, TerminationHeights, TrainingGraph, VecEnv,
+};
 use crate::nn::{Adam, Network};
-use crate::ppo::{Learner, Rollout, UpdateReport};
+use crate::ppo::{Done, Learner, Rollout, UpdateReport};
 use crate::recipe::Recipe;
-use crate::setting::Setting;
-use crate::style::Judges;
+use crate::style::Discriminators;
+
+mod shared;
+
+pub use shared::Parts;
+use shared::Shared;
 
 /// Hidden sizes of every policy.
 pub const POLICY_HIDDEN: [usize; 2] = [128, 32];
-
-/// Role of the discriminator that judges a parent's style, in a checkpoint.
-pub const PARENT_DISCRIMINATOR: &str = "parent_discriminator";
-
-/// Role of a policy's running mean, in a checkpoint.
-pub const AVERAGE: &str = "average";
-
-/// What a run starts from. Actors, judges and clips are in the order of the course's nodes.
-#[derive(Debug)]
-pub struct Parts {
-    /// Nodes and paths.
-    pub course: Course,
-    /// Actors and critic.
-    pub learner: Learner,
-    /// Judges of the nodes' styles, with their clips.
-    pub judges: Judges,
-    /// Other clips that episodes may start from.
-    pub start_demonstrations: Option<Demonstrations>,
-    /// What raises characters that were dropped, for starts.
-    pub recovery: Option<Recovery>,
-}
 
 /// Everything a run of a recipe holds.
 #[derive(Debug)]
@@ -42,24 +32,25 @@ pub struct Training {
     pub recipe: Recipe,
     /// Actors and critic.
     pub learner: Learner,
-    /// Judges of the nodes' styles.
-    pub judges: Judges,
+    /// Discriminators of the nodes' styles.
+    pub discriminators: Discriminators,
     /// Samples so far.
     pub samples: u64,
-    setting: Setting,
-    population: Population,
+    /// Index of the phase that is set up, once one is.
+    phase: Option<usize>,
+    shared: Shared,
+    envs: VecEnv,
     rollout: Rollout,
-    judged: Vec<f32>,
+    discriminator_inputs: Vec<f32>,
     model: Model,
     scaling: ActionScaling,
-    terrain_metres: f32,
 }
 
 /// What an iteration measured.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct IterationReport {
     /// Episodes and task reward.
-    pub population: PopulationReport,
+    pub episodes: EpisodeReport,
     /// Mean style reward.
     pub style: f32,
     /// Mean reward of all.
@@ -70,8 +61,8 @@ pub struct IterationReport {
     pub discriminator: DiscriminatorReport,
     /// Mean squared distance to the parents' parameters.
     pub distance: f64,
-    /// Geometric mean of the rates of the actors' Adam.
-    pub actor_rate: f32,
+    /// Geometric mean of the actors' learning rates.
+    pub learning_rate: f32,
     /// Seconds of rollout, gradient steps and discriminators.
     pub secs: [f32; 3],
 }
@@ -80,171 +71,202 @@ impl Training {
     /// Starts a run.
     #[must_use]
     pub fn new(recipe: Recipe, model: &Model, normalisers: Normalisers, parts: Parts, seed: u64) -> Self {
-        let Parts { course, learner, judges, start_demonstrations, recovery } = parts;
-        let shape = (recipe.environment.steps, recipe.environment.characters);
-        let (low, high) = model.joint_limits();
-        let scaling = ActionScaling::from_joint_limits(low, high).expect("a loaded model has finite limits");
-        let demonstrations = judges.demonstrations();
-        let environment = recipe.environment_at(0);
-        let task = recipe.phase_at(0).1.task;
-        let setting = Setting { environment, task, course, start_demonstrations, recovery, normalisers };
-        let stage = setting.stage(&demonstrations);
-        let population = Population::new(std::slice::from_ref(model), &scaling, &stage, seed);
+        let Parts { graph, learner, discriminators, start_demonstrations, hand_over, heights, pushed } =
+            parts;
+        let environment = &recipe.first().environment;
+        let shape = (environment.horizon, environment.num_envs);
+        let skeleton = model.skeleton().clone();
+        let scaling = ActionScaling::from_skeleton(&skeleton);
+        let demonstrations = discriminators.demonstrations();
+        let [inputs, actions] = [skeleton.policy_input_len(), skeleton.joint_count()];
+        let scored = skeleton.discriminator_input_len();
+        let shared =
+            Shared { graph, start_demonstrations, hand_over, normalisers, heights, pushed, skeleton };
+        let context = shared.context(environment, &demonstrations);
+        let envs = VecEnv::new(std::slice::from_ref(model), &scaling, &context, seed);
         Self {
-            rollout: Rollout::new(shape, (POLICY_INPUT_LEN, stage.critic_inputs()), DOF_COUNT),
-            judged: vec![0.0; shape.0 * shape.1 * DISCRIMINATOR_INPUT_LEN],
+            rollout: Rollout::new(shape, (inputs, context.critic_inputs()), actions),
+            discriminator_inputs: vec![0.0; shape.0 * shape.1 * scored],
             samples: 0,
-            recipe,
+            phase: None,
             learner,
-            judges,
-            population,
-            setting,
+            discriminators,
+            envs,
+            shared,
             model: model.clone(),
             scaling,
-            terrain_metres: 0.0,
+            recipe,
         }
     }
 
-    /// Networks that learn, with their optimisers, by their roles in a checkpoint: `actor`, its running mean `average`,
-    /// `discriminator`, `critic`; where skills are trained together all but the last have the skill's name before them,
-    /// with a dot.
+    /// Networks that learn, with their optimisers, by their roles in a checkpoint: `actor`, its moving average `ema`,
+    /// `discriminator`, `critic`. Where skills are trained together all but the last have the skill's name before them, with a
+    /// dot.
     pub fn networks_mut(&mut self) -> Vec<(String, &mut Network, Option<&mut Adam>)> {
         let together = !self.recipe.paths.is_empty();
-        let last = self.setting.course.nodes().len() - 1;
+        let last = self.shared.graph.nodes().len() - 1;
         let mut all = Vec::new();
-        let halfway = self.judges.halfway().to_vec();
-        let (judges, between) = self.judges.judges.split_at_mut(last + 1);
-        let nodes = self.setting.course.nodes().iter().zip(self.learner.actors.iter_mut().zip(judges));
-        for (i, (node, (actor, judge))) in nodes.enumerate() {
+        let halfway = self.discriminators.halfway().to_vec();
+        let (scorers, between) = self.discriminators.scorers.split_at_mut(last + 1);
+        let nodes = self.shared.graph.nodes().iter().zip(self.learner.actors.iter_mut().zip(scorers));
+        for (i, (node, (actor, scorer))) in nodes.enumerate() {
             let role = |what: &str| if together { format!("{}.{what}", node.name) } else { what.to_owned() };
             if together || i == last {
-                all.push((role("actor"), &mut actor.network, Some(&mut actor.adam)));
-                all.push((role(AVERAGE), &mut actor.average, None));
+                all.push((role(ACTOR), &mut actor.network, Some(&mut actor.adam)));
+                all.push((role(EMA), &mut actor.ema, None));
             }
-            if let Some(d) = &mut judge.discriminator {
-                let what = if together || i == last { "discriminator" } else { PARENT_DISCRIMINATOR };
+            if let Some(d) = &mut scorer.discriminator {
+                let what = if together || i == last { DISCRIMINATOR } else { PARENT_DISCRIMINATOR };
                 all.push((role(what), &mut d.network, Some(&mut d.adam)));
             }
         }
-        for (edge, judge) in halfway.iter().zip(between) {
+        for (edge, scorer) in halfway.iter().zip(between) {
             let [from, to] =
-                self.setting.course.edges()[*edge].map(|node| &self.setting.course.nodes()[node].name);
-            if let Some(d) = &mut judge.discriminator {
-                all.push((format!("{from}-{to}.discriminator"), &mut d.network, Some(&mut d.adam)));
+                self.shared.graph.pairs()[*edge].map(|node| &self.shared.graph.nodes()[node].name);
+            if let Some(d) = &mut scorer.discriminator {
+                all.push((format!("{from}-{to}.{DISCRIMINATOR}"), &mut d.network, Some(&mut d.adam)));
             }
         }
-        all.push(("critic".to_owned(), &mut self.learner.critic, Some(&mut self.learner.critic_adam)));
+        all.push((CRITIC.to_owned(), &mut self.learner.critic, Some(&mut self.learner.critic_adam)));
         all
     }
 
     /// What characters move along.
     #[must_use]
-    pub fn course(&self) -> &Course {
-        &self.setting.course
+    pub fn graph(&self) -> &TrainingGraph {
+        &self.shared.graph
     }
 
-    /// Puts the characters on the ground of the phase that is on, when it has changed.
-    fn choose_ground(&mut self) -> Result<(), ModelError> {
-        let metres = self.recipe.phase_at(self.samples).1.terrain_metres;
-        if metres == self.terrain_metres {
+    /// Sets up the phase after the samples so far, when it is another one than before.
+    fn enter_phase(&mut self) -> Result<(), ModelError> {
+        let index = self.recipe.phase_at(self.samples);
+        if self.phase == Some(index) {
             return Ok(());
         }
-        self.terrain_metres = metres;
-        let mut grounds = vec![self.model.clone()];
-        for seed in (1..4).filter(|_| metres > 0.0) {
-            let terrain = Terrain::Wavy { height_m: metres, wavelength_m: 6.0, seed };
-            grounds.push(self.model.with_terrain(terrain)?);
+        let before = self.phase.replace(index).map(|before| &self.recipe.phases[before].environment);
+        let phase = &self.recipe.phases[index];
+        self.learner.config.clone_from(&phase.ppo);
+        self.discriminators.set_config(&phase.discriminator);
+        if self.recipe.paths.is_empty() {
+            let last = self.shared.graph.nodes().len() - 1;
+            let node =
+                GraphNode::new(&self.recipe.skill, &phase.environment, self.shared.graph.nodes()[last].share);
+            self.shared.graph.set_node(last, node);
         }
-        let demonstrations = self.judges.demonstrations();
-        let stage = self.setting.stage(&demonstrations);
-        self.population = Population::new(&grounds, &self.scaling, &stage, self.samples);
+        let randomisation = &phase.environment.randomisation;
+        let models_of =
+            |config: &EnvironmentConfig| (config.randomisation.terrain_metres, config.randomisation.dynamics);
+        if before.map_or((0.0, 0.0), models_of) != models_of(&phase.environment) {
+            let models = randomisation.models(&self.model)?;
+            let demonstrations = self.discriminators.demonstrations();
+            let context = self.shared.context(&phase.environment, &demonstrations);
+            self.envs = VecEnv::new(&models, &self.scaling, &context, self.samples);
+        }
         Ok(())
     }
 
     /// One rollout and the gradient steps after it.
     ///
     /// # Errors
-    /// When the model can't be set on the terrain of the phase.
+    /// When the model can't be set on the grounds of the phase.
     pub fn iterate(&mut self) -> Result<IterationReport, ModelError> {
-        self.choose_ground()?;
-        let phase = self.recipe.phase_at(self.samples).1;
-        self.learner.config.deviation = phase.deviation.unwrap_or(self.recipe.ppo.deviation);
-        self.learner.config.guide = phase.guide;
-        self.setting.environment = self.recipe.environment_at(self.samples);
-        self.setting.task = phase.task;
+        self.enter_phase()?;
         let start = std::time::Instant::now();
         self.roll_out();
         let rolled = start.elapsed();
-        let (style, discriminator) = self.judge();
-        let judged = start.elapsed();
+        let (style, discriminator) = self.score_style();
+        let scored = start.elapsed();
         self.learner.compute_returns(&mut self.rollout);
         let update = self.learner.update(&self.rollout);
         self.samples += self.rollout.rows() as u64;
         let rows = self.rollout.rows() as f32;
         Ok(IterationReport {
-            population: std::mem::take(&mut self.population.report),
+            episodes: std::mem::take(&mut self.envs.report),
             style,
             reward: self.rollout.rewards.iter().sum::<f32>() / rows,
             update,
             discriminator,
             distance: self.learner.distance_to_parent(),
-            actor_rate: self.learner.actor_rate(),
+            learning_rate: self.learner.learning_rate(),
             secs: [
                 rolled.as_secs_f32(),
-                (start.elapsed() - judged).as_secs_f32(),
-                (judged - rolled).as_secs_f32(),
+                (start.elapsed() - scored).as_secs_f32(),
+                (scored - rolled).as_secs_f32(),
             ],
         })
     }
 
     fn roll_out(&mut self) {
-        let n = self.rollout.characters;
-        let demonstrations = self.judges.demonstrations();
-        let stage = self.setting.stage(&demonstrations);
-        let width = stage.critic_inputs();
+        let n = self.rollout.num_envs;
+        let config = &self.recipe.phases[self.recipe.phase_at(self.samples)].environment;
+        let demonstrations = self.discriminators.demonstrations();
+        let context = self.shared.context(config, &demonstrations);
+        let width = context.critic_inputs();
+        let (skeleton, graph) = (context.skeleton, context.graph);
+        let [inputs, joints] = [skeleton.policy_input_len(), skeleton.joint_count()];
+        let scored = skeleton.discriminator_input_len();
         self.rollout.clear();
-        let guided = self.learner.config.guide > 0.0;
-        self.rollout.guides.resize(if guided { self.rollout.actions.len() } else { 0 }, f32::NAN);
-        for step in 0..self.rollout.steps {
+        let cloning = self.learner.config.behaviour_cloning > 0.0;
+        self.rollout.cloning_targets.resize(if cloning { self.rollout.actions.len() } else { 0 }, f32::NAN);
+        for step in 0..self.rollout.horizon {
             let rows = step * n..(step + 1) * n;
             self.rollout.critic_inputs[rows.start * width..rows.end * width]
-                .copy_from_slice(&self.population.inputs);
-            let seen = self.population.inputs.chunks_exact(width).zip(self.population.agents());
-            for (row, (input, agent)) in rows.clone().zip(seen) {
-                if guided {
-                    let out = &mut self.rollout.guides[row * DOF_COUNT..(row + 1) * DOF_COUNT];
-                    agent.guide_into(&stage, &self.scaling, out);
+                .copy_from_slice(&self.envs.inputs);
+            let seen = self.envs.inputs.chunks_exact(width).zip(self.envs.envs());
+            for (row, (input, env)) in rows.clone().zip(seen) {
+                if cloning {
+                    let out = &mut self.rollout.cloning_targets[row * joints..(row + 1) * joints];
+                    env.reference_action_into(&context, &self.scaling, out);
                 }
-                let at = row * POLICY_INPUT_LEN;
-                self.rollout.inputs[at..at + POLICY_INPUT_LEN].copy_from_slice(&input[..POLICY_INPUT_LEN]);
-                self.rollout.edge[row] = agent.command.place.edge;
-                self.rollout.blend[row] = agent.command.place.t;
-                self.rollout.quiet[row] = agent.is_quiet();
+                let at = row * inputs;
+                self.rollout.inputs[at..at + inputs].copy_from_slice(&input[..inputs]);
+                (self.rollout.edge[row], self.rollout.blend[row]) =
+                    graph.pair_and_blend(env.command.position);
+                self.rollout.deterministic[row] = env.is_deterministic();
             }
             self.learner.act(&mut self.rollout, step);
-            let actions = &self.rollout.actions[rows.start * DOF_COUNT..rows.end * DOF_COUNT];
-            let judged =
-                &mut self.judged[rows.start * DISCRIMINATOR_INPUT_LEN..rows.end * DISCRIMINATOR_INPUT_LEN];
-            self.population.step(&stage, actions, judged);
-            self.rollout.record(step, self.population.ends(), &self.population.inputs_after);
+            let actions = &self.rollout.actions[rows.start * joints..rows.end * joints];
+            let frames = rows.start * scored..rows.end * scored;
+            self.envs.step(&context, actions, &mut self.discriminator_inputs[frames]);
+            self.rollout.record(step, self.envs.ends(), &self.envs.inputs_after);
             let at = self.rollout.edge[rows.clone()].iter().zip(&self.rollout.blend[rows.clone()]);
-            let rewards = self.rollout.rewards[rows].iter_mut().zip(self.population.terms());
-            for (((reward, terms), end), (edge, t)) in rewards.zip(self.population.ends()).zip(at) {
-                *reward = self.setting.reward(Place { edge: *edge, t: *t }, terms, *end);
+            let rewards = self.rollout.rewards[rows].iter_mut().zip(self.envs.terms());
+            for (((reward, terms), end), (edge, t)) in rewards.zip(self.envs.ends()).zip(at) {
+                let share = task_share(config, graph, graph.position_of(*edge, *t));
+                *reward = reward_of(config, share, terms, *end);
             }
         }
-        self.rollout.last_critic_inputs.copy_from_slice(&self.population.inputs);
+        self.rollout.last_critic_inputs.copy_from_slice(&self.envs.inputs);
     }
 
-    /// Adds the style reward, by the weight that the others leave, to the rewards that are there and teaches the judges; returns the mean style.
-    fn judge(&mut self) -> (f32, DiscriminatorReport) {
-        let places = (&self.rollout.edge[..], &self.rollout.blend[..]);
-        let style = self.judges.style(&self.setting.course, places, &self.judged);
-        let at = places.0.iter().zip(places.1).map(|(edge, t)| Place { edge: *edge, t: *t });
-        for ((reward, style), place) in self.rollout.rewards.iter_mut().zip(style).zip(at) {
-            *reward += self.setting.style_share(place) * style;
+    /// Adds the style reward, weighted by what the others leave, to the rewards that are there, and teaches the discriminators.
+    /// Returns the mean style reward.
+    fn score_style(&mut self) -> (f32, DiscriminatorReport) {
+        let config = &self.recipe.phases[self.recipe.phase_at(self.samples)].environment;
+        let graph = &self.shared.graph;
+        let positions = (&self.rollout.edge[..], &self.rollout.blend[..]);
+        let style = self.discriminators.style(graph, positions, &self.discriminator_inputs);
+        let at = positions.0.iter().zip(positions.1).map(|(edge, t)| graph.position_of(*edge, *t));
+        // Trackers of skills trained together get the tracking reward beside the others.
+        let together = config.reward.tracking_share > 0.0;
+        let tracking = if together { 0.0 } else { config.reward.tracking_weight };
+        for ((reward, style), position) in self.rollout.rewards.iter_mut().zip(style).zip(at) {
+            *reward += (1.0 - task_share(config, graph, position) - tracking) * style;
         }
         let mean = style.iter().sum::<f32>() / style.len() as f32;
-        (mean, self.judges.learn(&self.setting.course, places, &self.judged))
+        (mean, self.discriminators.learn(graph, positions, &self.discriminator_inputs))
     }
+}
+
+/// Weight of the task reward at a position.
+fn task_share(config: &EnvironmentConfig, graph: &TrainingGraph, position: GraphPosition) -> f32 {
+    config.reward.task_weight * graph.task(position)
+}
+
+/// Reward of a tick, without that for style.
+fn reward_of(config: &EnvironmentConfig, task_share: f32, terms: &RewardTerms, end: Done) -> f32 {
+    let reward = &config.reward;
+    let fall = if end == Done::Failed { reward.fall_cost } else { 0.0 };
+    let cost = fall + reward.foot_slip_cost * terms.foot_slip_mps;
+    task_share * terms.task + reward.tracking_weight * terms.tracking - cost
 }

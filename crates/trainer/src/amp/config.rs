@@ -1,43 +1,37 @@
-//! Hyper-parameters of a discriminator.
+//! Hyper-parameters of a discriminator. What no recipe changes is a constant.
 
 use serde::{Deserialize, Serialize};
 
-/// Hyper-parameters of a discriminator. Every field has the default of the recipe that worked.
+/// Learning rate.
+pub const LEARNING_RATE: f32 = 1e-4;
+
+/// Weight decay, as a share of the learning rate.
+pub const WEIGHT_DECAY: f32 = 0.01;
+
+/// Weight of the squared gradient at the demonstrations.
+pub const GRADIENT_PENALTY: f32 = 10.0;
+
+/// Simulated rows that enter the replay buffer in an iteration.
+pub const REPLAY_ROWS: usize = 1000;
+
+/// Hyper-parameters of a discriminator. The defaults are those of the recipe that worked.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct DiscriminatorConfig {
     /// Hidden sizes.
     pub hidden: Vec<usize>,
-    /// Rate of its Adam.
-    pub rate: f32,
-    /// Weight decay, as a share of the rate.
-    pub decay: f32,
-    /// Weight of the squared gradient at the demonstrations.
-    pub gradient_penalty: f32,
     /// Gradient steps an iteration.
     pub updates: usize,
     /// Demonstrations of one gradient step, and as many simulated rows.
-    pub rows: usize,
-    /// Deviation of the noise on its inputs while it learns.
-    pub noise: f32,
-    /// Simulated rows kept.
-    pub replay: usize,
-    /// Simulated rows taken up an iteration.
-    pub replay_rows: usize,
+    pub batch: usize,
+    /// Standard deviation of the noise on its inputs while it learns.
+    pub noise_std: f32,
+    /// Rows of the replay buffer.
+    pub replay_size: usize,
 }
 
 impl Default for DiscriminatorConfig {
     fn default() -> Self {
-        Self {
-            hidden: vec![512, 256],
-            rate: 1e-4,
-            decay: 0.01,
-            gradient_penalty: 10.0,
-            updates: 4,
-            rows: 256,
-            noise: 0.1,
-            replay: 100_000,
-            replay_rows: 1000,
-        }
+        Self { hidden: vec![512, 256], updates: 4, batch: 256, noise_std: 0.1, replay_size: 100_000 }
     }
 }

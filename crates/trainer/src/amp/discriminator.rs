@@ -1,9 +1,8 @@
 //! A discriminator that learns beside the policy, and the style reward it gives.
 
-use policy_core::DISCRIMINATOR_INPUT_LEN;
 use rayon::prelude::*;
 
-use super::config::DiscriminatorConfig;
+use super::config::{DiscriminatorConfig, GRADIENT_PENALTY, LEARNING_RATE, REPLAY_ROWS, WEIGHT_DECAY};
 use super::replay::Replay;
 use crate::env::Demonstrations;
 use crate::nn::{Adam, DiscriminatorLoss, DiscriminatorPass, Network, sigmoid};
@@ -21,7 +20,7 @@ pub fn style_reward(logit: f32) -> f32 {
 pub struct DiscriminatorReport {
     /// Cross-entropy of a row.
     pub cross_entropy: f32,
-    /// Share of rows judged rightly.
+    /// Share of rows told apart rightly.
     pub accuracy: f32,
     /// Squared gradient at a demonstration.
     pub squared_gradient: f32,
@@ -43,7 +42,7 @@ const LANES: usize = 2;
 pub struct DiscriminatorLearner {
     /// Hyper-parameters.
     pub config: DiscriminatorConfig,
-    /// The network: 625 normalised inputs, one logit.
+    /// The network: normalised inputs, one logit.
     pub network: Network,
     /// Its optimiser.
     pub adam: Adam,
@@ -56,26 +55,33 @@ pub struct DiscriminatorLearner {
 }
 
 impl DiscriminatorLearner {
-    /// A learner that starts from `network`, or from random parameters.
+    /// A learner that starts from `network`, or from random parameters for so many inputs.
     #[must_use]
-    pub fn new(config: DiscriminatorConfig, network: Option<Network>, seed: u64, stream: u64) -> Self {
+    pub fn new(
+        config: DiscriminatorConfig,
+        inputs: usize,
+        network: Option<Network>,
+        seed: u64,
+        stream: u64,
+    ) -> Self {
         let mut rng = Rng::new(seed, stream);
         let network = network.unwrap_or_else(|| {
-            let mut sizes = vec![DISCRIMINATOR_INPUT_LEN];
+            let mut sizes = vec![inputs];
             sizes.extend_from_slice(&config.hidden);
             sizes.push(1);
             Network::new(&sizes, 1.0, &mut rng)
         });
-        let rows = config.rows.div_ceil(LANES);
+        let inputs = network.inputs();
+        let rows = config.batch.div_ceil(LANES);
         let lane = Lane {
             pass: DiscriminatorPass::new(network.sizes(), rows),
-            input: vec![0.0; 2 * rows * DISCRIMINATOR_INPUT_LEN],
+            input: vec![0.0; 2 * rows * inputs],
             gradient: vec![0.0; network.parameters.len()],
             loss: DiscriminatorLoss::default(),
         };
         Self {
             adam: Adam::new(network.parameters.len()),
-            replay: Replay::new(config.replay),
+            replay: Replay::new(config.replay_size, inputs),
             noise: NoiseTable::new(seed),
             lanes: vec![lane; LANES],
             batch: BatchEvaluator::new(network.sizes()),
@@ -99,44 +105,27 @@ impl DiscriminatorLearner {
         inputs: &[f32],
         chosen: &[u32],
     ) -> DiscriminatorReport {
-        let row_of = |row: u32| {
-            let at = row as usize * DISCRIMINATOR_INPUT_LEN;
-            &inputs[at..at + DISCRIMINATOR_INPUT_LEN]
-        };
+        let width = self.network.inputs();
+        let row_of = |row: u32| &inputs[row as usize * width..(row as usize + 1) * width];
         if !chosen.is_empty() {
-            for _ in 0..self.config.replay_rows {
+            for _ in 0..REPLAY_ROWS {
                 let row = row_of(chosen[self.rng.index(chosen.len())]);
-                self.replay.push(row.try_into().expect("a row of this length"));
+                self.replay.push(row);
             }
         }
         let mut report = DiscriminatorReport::default();
         if self.replay.is_empty() {
             return report;
         }
-        let per_lane = self.config.rows.div_ceil(LANES);
+        let per_lane = self.config.batch.div_ceil(LANES);
         let scale = 1.0 / (per_lane * LANES) as f32;
         for _ in 0..self.config.updates {
-            for lane in &mut self.lanes {
-                let (real, simulated) = lane.input.split_at_mut(per_lane * DISCRIMINATOR_INPUT_LEN);
-                for row in real.chunks_exact_mut(DISCRIMINATOR_INPUT_LEN) {
-                    demonstrations.sample_into(&mut self.rng, row.try_into().expect("a row of this length"));
-                    self.noise.add(&mut self.rng, self.config.noise, row);
-                }
-                for (i, row) in simulated.chunks_exact_mut(DISCRIMINATOR_INPUT_LEN).enumerate() {
-                    let fresh = i % 2 == 0 && !chosen.is_empty();
-                    let from = if fresh {
-                        row_of(chosen[self.rng.index(chosen.len())])
-                    } else {
-                        self.replay.draw(&mut self.rng)
-                    };
-                    row.copy_from_slice(from);
-                    self.noise.add(&mut self.rng, self.config.noise, row);
-                }
-            }
-            let (network, penalty) = (&self.network, self.config.gradient_penalty);
+            self.fill_lanes(demonstrations, inputs, chosen);
+            let network = &self.network;
             self.lanes.par_iter_mut().for_each(|lane| {
                 lane.gradient.fill(0.0);
-                lane.loss = lane.pass.accumulate(network, &lane.input, penalty, scale, &mut lane.gradient);
+                lane.loss =
+                    lane.pass.accumulate(network, &lane.input, GRADIENT_PENALTY, scale, &mut lane.gradient);
             });
             let (first, others) = self.lanes.split_first_mut().expect("there are lanes");
             for lane in others {
@@ -145,14 +134,38 @@ impl DiscriminatorLearner {
                 first.loss.squared_gradient += lane.loss.squared_gradient;
                 first.loss.right += lane.loss.right;
             }
-            let config = &self.config;
-            self.adam.step(&mut self.network.parameters, &first.gradient, config.rate, config.decay);
+            let parameters = &mut self.network.parameters;
+            self.adam.step(parameters, &first.gradient, LEARNING_RATE, WEIGHT_DECAY);
             let each = f64::from(scale) / self.config.updates as f64;
             report.cross_entropy += (first.loss.cross_entropy * 0.5 * each) as f32;
             report.accuracy += (first.loss.right * 0.5 * each) as f32;
             report.squared_gradient += (first.loss.squared_gradient * each) as f32;
         }
         report
+    }
+
+    /// Fills the lanes of a gradient step: demonstrations, then rows of this rollout and of earlier ones by turns, with noise.
+    fn fill_lanes(&mut self, demonstrations: &Demonstrations, inputs: &[f32], chosen: &[u32]) {
+        let width = self.network.inputs();
+        let per_lane = self.config.batch.div_ceil(LANES);
+        let row_of = |row: u32| &inputs[row as usize * width..(row as usize + 1) * width];
+        for lane in &mut self.lanes {
+            let (real, simulated) = lane.input.split_at_mut(per_lane * width);
+            for row in real.chunks_exact_mut(width) {
+                demonstrations.sample_into(&mut self.rng, row);
+                self.noise.add(&mut self.rng, self.config.noise_std, row);
+            }
+            for (i, row) in simulated.chunks_exact_mut(width).enumerate() {
+                let fresh = i % 2 == 0 && !chosen.is_empty();
+                let from = if fresh {
+                    row_of(chosen[self.rng.index(chosen.len())])
+                } else {
+                    self.replay.draw(&mut self.rng)
+                };
+                row.copy_from_slice(from);
+                self.noise.add(&mut self.rng, self.config.noise_std, row);
+            }
+        }
     }
 }
 

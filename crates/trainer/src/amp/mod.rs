@@ -1,4 +1,4 @@
-//! Adversarial motion priors (Peng et al. 2021): a thin layer over PPO that judges style.
+//! Adversarial motion priors (Peng et al. 2021): a thin layer over PPO that scores style.
 
 mod config;
 mod discriminator;

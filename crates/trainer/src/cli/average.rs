@@ -7,6 +7,8 @@ use clap::Args;
 use trainer::average::average;
 use trainer::checkpoint::Checkpoint;
 
+use super::output::say;
+
 /// Arguments of the verb.
 #[derive(Args)]
 pub(crate) struct Arguments {
@@ -34,6 +36,6 @@ pub(crate) fn run(arguments: &Arguments) -> Result<()> {
         std::fs::create_dir_all(folder).with_context(|| format!("cannot make {}", folder.display()))?;
     }
     average(&checkpoints, &arguments.except)?.save(&arguments.out)?;
-    println!("wrote {}", arguments.out.display());
+    say(format_args!("wrote {}", arguments.out.display()))?;
     Ok(())
 }

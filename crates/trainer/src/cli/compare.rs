@@ -4,6 +4,8 @@ use anyhow::Result;
 use clap::Args;
 use trainer::compare::costs;
 
+use super::output::say;
+
 /// Arguments of the verb.
 #[derive(Args)]
 pub(crate) struct Arguments {
@@ -14,12 +16,12 @@ pub(crate) struct Arguments {
 
 /// Prints the table as Markdown.
 pub(crate) fn run(arguments: &Arguments) -> Result<()> {
-    println!("| control step | networks | multiply-adds | microseconds |\n|---|---|---|---|");
+    say(format_args!("| control step | networks | multiply-adds | microseconds |\n|---|---|---|---|"))?;
     for cost in costs(arguments.repeats)? {
         let widths = |n: &Vec<usize>| n.iter().map(ToString::to_string).collect::<Vec<_>>().join("-");
         let networks: Vec<String> = cost.networks.iter().map(widths).collect();
         let (name, count, time) = (&cost.name, cost.multiply_adds, cost.microseconds);
-        println!("| {name} | {} | {count} | {time:.2} |", networks.join(" + "));
+        say(format_args!("| {name} | {} | {count} | {time:.2} |", networks.join(" + ")))?;
     }
     Ok(())
 }

@@ -3,16 +3,15 @@
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
-use std::time::Instant;
 
 use anyhow::{Context, Result};
 use clap::Args;
 use physics_bridge::Model;
-use policy_core::{CharacterPack, CharacterState};
-use trainer::checkpoint::write_atomically;
+use policy_core::{CharacterPack, CharacterState, ControllerConfig, TurnAssist};
 use trainer::clip::ClipFolder;
-use trainer::evaluate::{Effort, clip_states, evaluate};
+use trainer::evaluate::{Effort, Progress, Section, clip_states, evaluate, plots, table};
 use trainer::recipe::Recipe;
+use trainer::storage::write_atomically;
 
 /// Arguments of the verb.
 #[derive(Args)]
@@ -22,9 +21,33 @@ pub(crate) struct Arguments {
     /// File to write the measures to.
     #[arg(long)]
     json: Option<PathBuf>,
-    /// Fewer characters and seconds: under a minute.
+    /// File to draw a page of plots of what a player feels to, as SVG.
+    #[arg(long)]
+    plots: Option<PathBuf>,
+    /// Fewer characters and seconds: under three minutes.
     #[arg(long)]
     quick: bool,
+    /// Measure these sections alone, separated by commas.
+    #[arg(long, value_delimiter = ',', value_parser = section)]
+    only: Vec<Section>,
+    /// Let the player's controller slow down to turn.
+    #[arg(long)]
+    turn_assist: bool,
+    /// Seconds in which the player's controller passes from the joint targets before a skill to those of the skill.
+    #[arg(long, default_value_t = 0.0, value_parser = seconds)]
+    handover_secs: f32,
+}
+
+/// A time that a controller takes.
+fn seconds(text: &str) -> Result<f32, String> {
+    let secs = text.parse::<f32>().ok().filter(|secs| (0.0..=10.0).contains(secs));
+    secs.ok_or_else(|| "expected seconds from 0 to 10".into())
+}
+
+/// The section of a name.
+fn section(name: &str) -> Result<Section, String> {
+    let names = || Section::ALL.map(Section::name).join(", ");
+    Section::from_name(name).ok_or_else(|| format!("expected one of {}", names()))
 }
 
 /// Measures.
@@ -38,14 +61,21 @@ pub(crate) fn run(
     let bytes = std::fs::read(path).with_context(|| format!("cannot read {}", path.display()))?;
     let pack = CharacterPack::from_bytes(&bytes).with_context(|| path.display().to_string())?;
     let effort = if arguments.quick { Effort::QUICK } else { Effort::FULL };
-    let start = Instant::now();
+    let sections: &[Section] = if arguments.only.is_empty() { &Section::ALL } else { &arguments.only };
     let states = match clips {
         Some(clips) => states_of_clips(model, recipes, clips, &pack)?,
         None => BTreeMap::new(),
     };
-    let evaluation = evaluate(model, &Arc::new(pack), &effort, &states, |what| {
-        eprintln!("{:5.0} s {what}", start.elapsed().as_secs_f32());
-    })?;
+    let turn_assist = arguments.turn_assist.then(TurnAssist::default);
+    let handover_secs = arguments.handover_secs;
+    let config = ControllerConfig { turn_assist, handover_secs, ..ControllerConfig::default() };
+    let progress = Progress::bar();
+    let evaluation = evaluate(model, &Arc::new(pack), config, (&effort, sections), &states, &progress)?;
+    progress.finish();
+    if let Some(svg) = &arguments.plots {
+        plots::draw(&evaluation.player, svg).with_context(|| format!("cannot draw {}", svg.display()))?;
+    }
+    eprint!("{}", table(&evaluation.player));
     let text = serde_json::to_string_pretty(&evaluation)?;
     match &arguments.json {
         Some(path) => {

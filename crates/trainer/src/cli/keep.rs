@@ -4,9 +4,11 @@ use std::path::Path;
 
 use anyhow::{Context, Result};
 use clap::Args;
-use trainer::checkpoint::Checkpoint;
 use trainer::env::Normalisers;
 use trainer::normaliser_file;
+use trainer::run::newest_checkpoint;
+
+use super::output::say;
 
 /// Arguments of the verb.
 #[derive(Args)]
@@ -20,10 +22,13 @@ pub(crate) struct Arguments {
 pub(crate) fn run(normalisers: &Normalisers, runs: &Path, kept: &Path, arguments: &Arguments) -> Result<()> {
     std::fs::create_dir_all(kept).with_context(|| format!("cannot make {}", kept.display()))?;
     for skill in &arguments.skills {
-        let checkpoint = Checkpoint::load(&runs.join(skill).join("checkpoint.safetensors"))?;
+        let folder = runs.join(skill);
+        let loaded = newest_checkpoint(&folder)?;
+        let checkpoint =
+            loaded.with_context(|| format!("expected a run in {}", folder.display()))?.checkpoint;
         let path = kept.join(format!("{skill}.safetensors"));
         checkpoint.slim().save(&path)?;
-        println!("wrote {}", path.display());
+        say(format_args!("wrote {}", path.display()))?;
     }
     normaliser_file::save(&kept.join("normaliser.safetensors"), normalisers)?;
     Ok(())

@@ -3,8 +3,10 @@
 pub(crate) mod average;
 pub(crate) mod compare;
 pub(crate) mod evaluate;
+pub(crate) mod interrupt;
 pub(crate) mod keep;
 pub(crate) mod normaliser;
+pub(crate) mod output;
 pub(crate) mod pack;
 pub(crate) mod pca;
 pub(crate) mod strip;

@@ -11,6 +11,8 @@ use trainer::env::Normalisers;
 use trainer::normaliser_file;
 use trainer::recipe::Recipe;
 
+use super::output::say;
+
 /// Arguments of the verb.
 #[derive(Args)]
 pub(crate) struct Arguments {
@@ -43,26 +45,26 @@ pub(crate) fn run(
     }
     let clips = names.iter().map(|n| folder.load(n)).collect::<Result<Vec<_>, _>>()?;
     let ours = Normalisers::from_clips(&clips, model)?;
-    println!("{} clips: {}", clips.len(), names.into_iter().collect::<Vec<_>>().join(", "));
+    say(format_args!("{} clips: {}", clips.len(), names.into_iter().collect::<Vec<_>>().join(", ")))?;
     if let Some(other) = &arguments.compare {
-        let other = normaliser_file::load(other)?;
+        let other = normaliser_file::load(other, model.skeleton())?;
         for (name, a, b) in
             [("observation", &ours.observation, &other.observation), ("frame", &ours.frame, &other.frame)]
         {
             let worst =
                 |a: &[f32], b: &[f32]| a.iter().zip(b).map(|(a, b)| (a - b).abs()).fold(0.0, f32::max);
             let ratios = a.deviation().iter().zip(b.deviation()).map(|(a, b)| (a / b).ln().abs());
-            println!(
+            say(format_args!(
                 "{name}: means differ by at most {:.4}, deviations by a factor of at most {:.4}",
                 worst(a.mean(), b.mean()),
                 ratios.fold(0.0, f32::max).exp()
-            );
+            ))?;
         }
     }
     if let Some(parent) = path.parent() {
         std::fs::create_dir_all(parent)?;
     }
     normaliser_file::save(path, &ours)?;
-    println!("wrote {}", path.display());
+    say(format_args!("wrote {}", path.display()))?;
     Ok(())
 }

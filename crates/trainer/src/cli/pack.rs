@@ -1,13 +1,21 @@
 //! `trainer pack`: binds trained skills into a character pack.
 
 use std::path::PathBuf;
+use std::sync::Arc;
+use std::time::Instant;
 
-use anyhow::{Context, Result};
+use anyhow::{Context, Result, ensure};
 use clap::Args;
 use physics_bridge::Model;
-use trainer::checkpoint::{Checkpoint, write_atomically};
+use policy_core::{CharacterPack, SkillId};
+use trainer::checkpoint::CheckpointError;
 use trainer::env::Normalisers;
-use trainer::pack::{Ingredient, PackPlan, bind};
+use trainer::evaluate::{measure_get_up, measure_skill};
+use trainer::pack::{Agreement, PackPlan, PlannedPolicy, TrainedSkill, bind, distil};
+use trainer::storage::{read_bounded, write_atomically};
+use trainer::workspace::CheckpointFile;
+
+use super::output::say;
 
 /// Arguments of the verb.
 #[derive(Args)]
@@ -24,37 +32,98 @@ pub(crate) struct Arguments {
     /// Skills to leave out though they are trained.
     #[arg(long, value_delimiter = ',')]
     without: Vec<String>,
+    /// Skinned mesh to put into the pack, a binary glTF file whose nodes are named like the bodies.
+    #[arg(long, value_name = "GLB")]
+    mesh: Option<PathBuf>,
+    /// Keep the discriminators of the training instead of small ones distilled from them.
+    #[arg(long)]
+    large_discriminators: bool,
+    /// Rollouts of each skill that small discriminators learn from, 1 to 10000.
+    #[arg(long, default_value_t = 96, value_parser = clap::value_parser!(u16).range(1..=10_000))]
+    rollouts: u16,
+    /// Measure the skills with large and with small discriminators, so many tries each.
+    #[arg(long, value_name = "TRIES")]
+    check: Option<usize>,
 }
+
+/// Largest mesh, bytes.
+const MOST_MESH_BYTES: u64 = 64 << 20;
 
 /// Binds.
 pub(crate) fn run(
     model: &Model,
     normalisers: &Normalisers,
-    checkpoint: &dyn Fn(&str) -> PathBuf,
+    newest: &dyn Fn(&str) -> Result<Option<CheckpointFile>, CheckpointError>,
     a: &Arguments,
 ) -> Result<()> {
     let mut plan = PackPlan::load(&a.plan)?;
-    let joint = plan.joint.as_ref().map(|run| checkpoint(run)).filter(|path| path.exists());
-    let joint = joint.map(|path| Checkpoint::load(&path).map(|loaded| (loaded, path))).transpose()?;
-    let together = |skill: &str| joint.as_ref().filter(|(loaded, _)| Ingredient::is_in(skill, loaded));
-    if a.partial || !a.without.is_empty() {
-        let trained = |skill: &str| together(skill).is_some() || checkpoint(skill).exists();
-        let left_out = |skill: &str| a.without.iter().any(|w| w == skill) || (a.partial && !trained(skill));
-        plan = plan.only(|skill| !left_out(skill));
+    let joint = plan.joint.as_ref().map(|run| newest(run)).transpose()?.flatten();
+    let together = |skill: &str| joint.as_ref().filter(|(loaded, _)| TrainedSkill::is_in(skill, loaded));
+    let mut trained = Vec::new();
+    for PlannedPolicy { name, .. } in &plan.policies {
+        let own = match together(name) {
+            Some((loaded, path)) => Some(TrainedSkill::from_checkpoint(name, loaded, path)?),
+            None => newest(name)?
+                .map(|(loaded, path)| TrainedSkill::from_checkpoint(name, &loaded, &path))
+                .transpose()?,
+        };
+        let known = own.is_some();
+        trained.extend(own);
+        ensure!(
+            known || a.partial,
+            "expected {name} to be trained, found no checkpoint: leave it out by --partial"
+        );
     }
-    let mut ingredients = Vec::new();
-    for policy in &plan.policies {
-        ingredients.push(match together(&policy.name) {
-            Some((loaded, path)) => Ingredient::from_checkpoint(&policy.name, loaded, path)?,
-            None => Ingredient::load(&policy.name, &checkpoint(&policy.name))?,
-        });
+    trained.retain(|t| !a.without.contains(&t.skill));
+    plan = plan.only(|skill| trained.iter().any(|t| t.skill == skill));
+    let read_mesh = |path: &PathBuf| {
+        read_bounded(path, MOST_MESH_BYTES).with_context(|| format!("cannot read {}", path.display()))
+    };
+    let mesh = a.mesh.as_ref().map(read_mesh).transpose()?;
+    let mut pack = Arc::new(bind(&plan, &trained, normalisers, model, mesh.clone())?);
+    if !a.large_discriminators {
+        let tries = a.check.unwrap_or_default();
+        report_skills(model, &pack, "large", tries)?;
+        for (name, network, agreement) in distil(model, &pack, &trained, a.rollouts.into()) {
+            let Agreement { rows, same_side, score_error } = agreement;
+            say(format_args!(
+                "discriminator of {name}: {:?}, {:.1} % of {rows} rows on the same side of the threshold, scores \
+                 differ by {score_error:.3}",
+                network.sizes(),
+                100.0 * same_side
+            ))?;
+            let large = trained.iter_mut().find(|t| t.skill == name);
+            large.into_iter().for_each(|t| t.discriminator.clone_from(&network));
+        }
+        pack = Arc::new(bind(&plan, &trained, normalisers, model, mesh)?);
+        report_skills(model, &pack, "small", tries)?;
     }
-    let pack = bind(&plan, &ingredients, normalisers, model)?;
-    write_atomically(&a.out, &pack.to_bytes())
-        .with_context(|| format!("cannot write {}", a.out.display()))?;
-    for (node, ingredient) in pack.graph().nodes().iter().zip(&ingredients) {
-        println!("{:8} {}", node.name, ingredient.origin);
+    let bytes = pack.to_bytes();
+    write_atomically(&a.out, &bytes).with_context(|| format!("cannot write {}", a.out.display()))?;
+    for (node, skill) in pack.graph().nodes().iter().zip(&trained) {
+        say(format_args!("{:12} {}", node.name, skill.origin))?;
     }
-    println!("wrote {}", a.out.display());
+    let start = Instant::now();
+    CharacterPack::from_bytes(&bytes).with_context(|| format!("cannot load {}", a.out.display()))?;
+    let ms = 1e3 * start.elapsed().as_secs_f32();
+    say(format_args!("wrote {}, {} bytes, loaded in {ms:.1} ms", a.out.display(), bytes.len()))
+}
+
+/// Prints how the skills of a pack end.
+fn report_skills(model: &Model, pack: &Arc<CharacterPack>, which: &str, tries: usize) -> Result<()> {
+    for (index, skill) in pack.skills().iter().enumerate().filter(|_| tries > 0) {
+        let id = SkillId::new(index);
+        let report = match pack.recovery() == Some(id) {
+            true => measure_get_up(model, pack, &skill.name, tries).unwrap_or_default(),
+            false => measure_skill(model, pack, id, tries),
+        };
+        say(format_args!(
+            "{} with {which} discriminators: {:.1} % succeed, {:.1} % are recognised, after {:.2} s",
+            skill.name,
+            100.0 * report.success,
+            100.0 * report.recognised,
+            report.seconds
+        ))?;
+    }
     Ok(())
 }

@@ -9,11 +9,13 @@ use anyhow::{Context, Result, ensure};
 use clap::Args;
 use physics_bridge::Model;
 use plotters::prelude::*;
-use policy_core::{CharacterPack, Mlp, OBSERVATION_LEN};
+use policy_core::{CharacterPack, Mlp, NodeId};
 use rayon::prelude::*;
-use trainer::checkpoint::write_atomically;
-use trainer::evaluate::Subject;
+use trainer::evaluate::EvalCharacter;
 use trainer::pca::{Components, correlation};
+use trainer::storage::write_atomically;
+
+use super::output::say;
 
 /// Arguments of the verb.
 #[derive(Args)]
@@ -34,13 +36,13 @@ pub(crate) fn run(model: &Model, arguments: &Arguments) -> Result<()> {
     let bytes = std::fs::read(path).with_context(|| format!("cannot read {}", path.display()))?;
     let pack = Arc::new(CharacterPack::from_bytes(&bytes).with_context(|| path.display().to_string())?);
     std::fs::create_dir_all(&arguments.out)?;
-    let ticks = (arguments.secs * 30.0) as usize;
+    let ticks = (arguments.secs * pack.control_hz()) as usize;
     // What lies on a path: skills that run by switch lie far away and would leave no room for the rest.
     let graph = pack.graph();
-    let on_a_path = |node: usize| graph.paths().iter().any(|p| p.nodes.contains(&node));
-    let chosen: Vec<usize> = (0..graph.nodes().len()).filter(|node| on_a_path(*node)).collect();
+    let on_a_path = |node: &NodeId| graph.paths().iter().any(|path| path.nodes().contains(node));
+    let chosen: Vec<NodeId> = (0..graph.nodes().len()).map(NodeId::new).filter(on_a_path).collect();
     ensure!(!chosen.is_empty(), "{}: expected a path, found none", path.display());
-    let nodes: Vec<_> = chosen.iter().map(|node| &graph.nodes()[*node]).collect();
+    let nodes: Vec<_> = chosen.iter().map(|node| graph.node(*node)).collect();
     let visited: Vec<Vec<Vec<f32>>> =
         chosen.par_iter().map(|node| states(model, &pack, *node, ticks)).collect();
     let all: Vec<Vec<f32>> = visited.iter().flatten().cloned().collect();
@@ -54,7 +56,7 @@ pub(crate) fn run(model: &Model, arguments: &Arguments) -> Result<()> {
     }
     write_atomically(&arguments.out.join("states.csv"), csv.as_bytes())?;
 
-    let flat: Vec<Vec<f32>> = chosen.iter().map(|node| parameters(&pack.policies()[*node])).collect();
+    let flat: Vec<Vec<f32>> = chosen.iter().map(|node| parameters(&pack.policies()[node.index()])).collect();
     let components = Components::of(&flat, 2);
     let mut csv = String::from("policy,x,y\n");
     for (node, row) in nodes.iter().zip(&flat) {
@@ -70,7 +72,7 @@ pub(crate) fn run(model: &Model, arguments: &Arguments) -> Result<()> {
     let by_policy: Vec<_> = visited.iter().map(|rows| points(&states, rows)).collect();
     scatter(&arguments.out.join("states.svg"), "visited states", &names, &by_policy, &[])?;
     let by_policy: Vec<_> = flat.iter().map(|row| points(&components, std::slice::from_ref(row))).collect();
-    let at = |node: usize| chosen.iter().position(|c| *c == node);
+    let at = |node: NodeId| chosen.iter().position(|c| *c == node);
     let edges = graph.edges().iter().filter_map(|e| Some([at(e.nodes[0])?, at(e.nodes[1])?]));
     let edges: Vec<_> = edges.collect();
     scatter(&arguments.out.join("parameters.svg"), "parameters", &names, &by_policy, &edges)?;
@@ -83,10 +85,10 @@ pub(crate) fn run(model: &Model, arguments: &Arguments) -> Result<()> {
         }
     }
     let share = |c: &Components| 100.0 * c.variances.iter().sum::<f64>() / c.total_variance.max(1e-12);
-    println!("states: two components hold {:.0} % of the variance", share(&states));
-    println!("parameters: two components hold {:.0} % of the variance", share(&components));
-    println!("correlation of distances: {:.2}", correlation(&of_parameters, &of_states));
-    println!("wrote {}", arguments.out.display());
+    say(format_args!("states: two components hold {:.0} % of the variance", share(&states)))?;
+    say(format_args!("parameters: two components hold {:.0} % of the variance", share(&components)))?;
+    say(format_args!("correlation of distances: {:.2}", correlation(&of_parameters, &of_states)))?;
+    say(format_args!("wrote {}", arguments.out.display()))?;
     Ok(())
 }
 
@@ -137,13 +139,13 @@ fn scatter(
 }
 
 /// Normalised observations that a policy visits while it goes straight ahead.
-fn states(model: &Model, pack: &Arc<CharacterPack>, node: usize, ticks: usize) -> Vec<Vec<f32>> {
-    let mut subject = Subject::at(model, pack, node);
+fn states(model: &Model, pack: &Arc<CharacterPack>, node: NodeId, ticks: usize) -> Vec<Vec<f32>> {
+    let mut character = EvalCharacter::at(model, pack, node);
     let mut rows = Vec::with_capacity(ticks);
     for _ in 0..ticks {
-        let command = subject.ahead(node);
-        subject.tick(&command);
-        rows.push(subject.controller.policy_input()[..OBSERVATION_LEN].to_vec());
+        let command = character.ahead(node);
+        character.tick(&command);
+        rows.push(character.controller.policy_input()[..pack.skeleton().observation_len()].to_vec());
     }
     rows
 }

@@ -6,13 +6,15 @@ use std::sync::Arc;
 use anyhow::{Context, Result};
 use clap::Args;
 use physics_bridge::Model;
-use policy_core::{Body, CharacterPack, CharacterState};
-use trainer::checkpoint::write_atomically;
+use policy_core::{CharacterPack, CharacterState, NodeId, SkillId};
 use trainer::clip::ClipFolder;
 use trainer::env::DT_SECS;
 use trainer::evaluate::{STANCE_METRES, clip_states, pose_error, watch, watch_layers, watch_skill};
 use trainer::recipe::Recipe;
+use trainer::storage::write_atomically;
 use trainer::strip::{Row, draw};
+
+use super::output::say;
 
 /// Arguments of the verb.
 #[derive(Args)]
@@ -40,16 +42,16 @@ pub(crate) fn run(model: &Model, recipes: &Path, clips: &ClipFolder, a: &Argumen
         let recipe = Recipe::load(&recipes.join(format!("{}.toml", node.name)))?;
         let name = &recipe.clips[0].name;
         let clip = clip_states(model, &clips.load(name)?)?;
-        let motion = watch(model, &pack, index);
+        let motion = watch(model, &pack, NodeId::new(index));
         if motion.len() < span {
-            println!("{}: falls before it can be drawn", node.name);
+            say(format_args!("{}: falls before it can be drawn", node.name))?;
             continue;
         }
-        let clip: Vec<CharacterState> = clip.iter().cycle().take(span).copied().collect();
+        let clip: Vec<CharacterState> = clip.iter().cycle().take(span).cloned().collect();
         // The stretch of the motion that is in step with the clip.
         let at = |start: usize| pose_error(&motion[start..start + 1], &clip[..1]);
         let start = (0..=motion.len() - span).min_by(|x, y| at(*x).total_cmp(&at(*y))).unwrap_or(0);
-        let figures = |states: &[CharacterState]| states.iter().step_by(a.stride.max(1)).copied().collect();
+        let figures = |states: &[CharacterState]| states.iter().step_by(a.stride.max(1)).cloned().collect();
         let rows = [
             Row { caption: format!("clip {name}"), states: figures(&clip), fixed: false },
             Row {
@@ -58,23 +60,35 @@ pub(crate) fn run(model: &Model, recipes: &Path, clips: &ClipFolder, a: &Argumen
                 fixed: false,
             },
         ];
-        write(&a.out, &node.name, &rows)?;
+        write(model, &a.out, &node.name, &rows)?;
     }
+    episodic_skills(model, &pack, recipes, clips, a)?;
+    layers(model, &pack, a)
+}
+
+/// Each episodic skill, whole, beside its clips.
+fn episodic_skills(
+    model: &Model,
+    pack: &Arc<CharacterPack>,
+    recipes: &Path,
+    clips: &ClipFolder,
+    a: &Arguments,
+) -> Result<()> {
     for (index, skill) in pack.skills().iter().enumerate() {
         let recipe = Recipe::load(&recipes.join(format!("{}.toml", skill.name)))?;
-        let raises = pack.recovery() == Some(index);
+        let raises = pack.recovery() == Some(SkillId::new(index));
         // One that raises the character has a clip for each side it may lie on.
         for (which, clip) in recipe.clips.iter().take(if raises { 2 } else { 1 }).enumerate() {
             let states = clip_states(model, &clips.load(&clip.name)?)?;
             let states = if raises { &states[..] } else { &states[..states.len() / 2] };
-            let motion = watch_skill(model, &pack, index, which == 0);
+            let motion = watch_skill(model, pack, SkillId::new(index), which == 0);
             let name = if raises { clip.name.clone() } else { skill.name.clone() };
             // The whole of a skill on the strip, whatever it takes.
             let figures = |states: &[CharacterState]| -> Vec<CharacterState> {
                 let last = states.len().saturating_sub(1);
                 (0..a.figures)
                     .filter_map(|i| states.get(i * last / a.figures.max(2).saturating_sub(1)))
-                    .copied()
+                    .cloned()
                     .collect()
             };
             let secs = |states: &[CharacterState]| states.len() as f32 * DT_SECS;
@@ -90,16 +104,19 @@ pub(crate) fn run(model: &Model, recipes: &Path, clips: &ClipFolder, a: &Argumen
                     fixed: true,
                 },
             ];
-            write(&a.out, &name, &rows)?;
+            write(model, &a.out, &name, &rows)?;
         }
     }
-    layers(model, &pack, a)
+    Ok(())
 }
 
 /// Single layers half-way from the second node of the first path to its third, and the policies at both ends.
 fn layers(model: &Model, pack: &Arc<CharacterPack>, a: &Arguments) -> Result<()> {
-    let [_, from, to, ..] = pack.graph().paths()[0].nodes[..] else { return Ok(()) };
-    let names = [from, to].map(|node| &pack.graph().nodes()[node].name);
+    let nodes = pack.graph().paths().first().map(|path| path.nodes());
+    let (Some(&[_, from, to, ..]), Some(&foot)) = (nodes, model.skeleton().feet().first()) else {
+        return Ok(());
+    };
+    let names = [from, to].map(|node| &pack.graph().node(node).name);
     let mut rows = Vec::new();
     for (caption, t) in [
         (format!("{} alone", names[0]), [0.0; 3]),
@@ -110,24 +127,24 @@ fn layers(model: &Model, pack: &Arc<CharacterPack>, a: &Arguments) -> Result<()>
         (format!("{} alone", names[1]), [1.0; 3]),
     ] {
         let Some(states) = watch_layers(model, pack, (from, to), t) else {
-            println!("{caption}: falls before it can be drawn");
+            say(format_args!("{caption}: falls before it can be drawn"))?;
             continue;
         };
-        // From a moment at which the right foot comes down, after 4 s.
-        let height = |i: usize| states[i].body(Body::RightFoot).position.z;
+        // From a tick at which the first foot comes down, after 4 s.
+        let height = |i: usize| states[i].body(foot).position.z;
         let start = (120..states.len().saturating_sub(a.figures * a.stride))
             .find(|i| height(i - 1) >= STANCE_METRES && height(*i) < STANCE_METRES)
             .unwrap_or(120);
-        let states = states[start..].iter().step_by(a.stride.max(1)).take(a.figures).copied().collect();
+        let states = states[start..].iter().step_by(a.stride.max(1)).take(a.figures).cloned().collect();
         rows.push(Row { caption, states, fixed: false });
     }
-    write(&a.out, "layers", &rows)
+    write(model, &a.out, "layers", &rows)
 }
 
-fn write(folder: &Path, name: &str, rows: &[Row]) -> Result<()> {
+fn write(model: &Model, folder: &Path, name: &str, rows: &[Row]) -> Result<()> {
     let path = folder.join(format!("{name}.svg"));
-    write_atomically(&path, draw(rows).as_bytes())
+    write_atomically(&path, draw(model.skeleton(), rows).as_bytes())
         .with_context(|| format!("cannot write {}", path.display()))?;
-    println!("wrote {}", path.display());
+    say(format_args!("wrote {}", path.display()))?;
     Ok(())
 }

@@ -1,54 +1,108 @@
 //! `trainer train`: one skill, or the whole graph in order.
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
+use std::process::ExitCode;
 use std::time::Duration;
 
 use anyhow::Result;
 use clap::Args;
 use indicatif::{ProgressBar, ProgressStyle};
-use trainer::env::{Course, DT_SECS, NodeReport, REPORTED_NODES};
+use trainer::env::{DT_SECS, NodeReport, REPORTED_NODES, TrainingGraph};
+use trainer::lineage::Lineage;
 use trainer::recipe::Recipe;
-use trainer::run::Run;
-use trainer::workplace::Workplace;
+use trainer::run::{Existing, Run, RunError, holds_a_run};
+use trainer::workspace::Workspace;
+
+use super::interrupt::{Interrupt, Signal};
+use super::output::{complain, say};
 
 /// Arguments of the verb.
 #[derive(Args)]
 pub(crate) struct Arguments {
     /// Skill whose recipe to run, or the file of a recipe.
-    #[arg(required_unless_present = "all", conflicts_with = "all")]
+    #[arg(required_unless_present_any = ["all", "plan"], conflicts_with_all = ["all", "plan"])]
     skill: Option<String>,
     /// Run all recipes, parents before children.
-    #[arg(long)]
+    #[arg(long, conflicts_with = "plan")]
     all: bool,
-    /// Go on from the last checkpoint; finished runs are left alone.
-    #[arg(long)]
+    /// Run a lineage: runs in order, with what each starts from, and averages.
+    #[arg(long, value_name = "FILE")]
+    plan: Option<PathBuf>,
+    /// Continue existing runs from their last checkpoint; finished runs are left alone.
+    #[arg(long, conflicts_with = "overwrite")]
     resume: bool,
-    /// Seed of the random numbers.
-    #[arg(long, default_value_t = 1)]
-    seed: u64,
-    /// Threads; one makes a run repeat itself whatever else the machine does.
+    /// Delete existing runs and start anew.
     #[arg(long)]
-    threads: Option<usize>,
+    overwrite: bool,
+    /// Seed of the random numbers; a lineage has its own.
+    #[arg(long, default_value_t = 1, conflicts_with = "plan")]
+    seed: u64,
+    /// Threads, 1 to 1024; the processor's number by default.
+    #[arg(long, value_parser = clap::value_parser!(u16).range(1..=1024))]
+    threads: Option<u16>,
     /// Stop after this many iterations.
     #[arg(long)]
     iterations: Option<u64>,
 }
 
 /// Trains.
-pub(crate) fn run(workplace: &Workplace, arguments: &Arguments) -> Result<()> {
+pub(crate) fn run(workspace: &Workspace, arguments: &Arguments) -> Result<ExitCode> {
+    let interrupt = Interrupt::listen()?;
     if let Some(threads) = arguments.threads {
-        rayon::ThreadPoolBuilder::new().num_threads(threads).build_global()?;
+        rayon::ThreadPoolBuilder::new().num_threads(threads.into()).build_global()?;
+    }
+    let existing = match (arguments.resume, arguments.overwrite) {
+        (true, _) => Existing::Resume,
+        (_, true) => Existing::Overwrite,
+        _ => Existing::Refuse,
+    };
+    let mut stopped = None;
+    let mut step = |run: &mut Run| -> Result<bool> {
+        run.notes.iter().for_each(complain);
+        train(run, arguments.iterations, &interrupt)?;
+        stopped = interrupt.caught().map(|signal| {
+            complain(&how_to_continue(run, signal, arguments));
+            signal.exit_code()
+        });
+        Ok(stopped.is_none())
+    };
+    if let Some(plan) = &arguments.plan {
+        Lineage::load(plan)?.execute(workspace, existing, &mut step)?;
+        return Ok(stopped.unwrap_or(ExitCode::SUCCESS));
     }
     let recipes = match &arguments.skill {
         Some(file) if file.ends_with(".toml") => vec![Recipe::load(Path::new(file))?],
-        Some(skill) => vec![workplace.recipe(skill)?],
-        None => workplace.recipes_in_order()?,
+        Some(skill) => vec![workspace.recipe(skill)?],
+        None => workspace.recipes_in_order()?,
     };
-    for recipe in recipes {
-        let mut run = workplace.prepare(recipe, arguments.seed, arguments.resume)?;
-        train(&mut run, arguments.iterations)?;
+    // Refused before hours are spent on the runs before it.
+    for folder in recipes.iter().map(|recipe| workspace.runs.join(&recipe.skill)) {
+        if existing == Existing::Refuse && holds_a_run(&folder) {
+            return Err(RunError::Exists { folder }.into());
+        }
     }
-    Ok(())
+    for recipe in recipes {
+        let mut run = workspace.prepare(recipe, arguments.seed, existing)?;
+        if !step(&mut run)? {
+            break;
+        }
+    }
+    Ok(stopped.unwrap_or(ExitCode::SUCCESS))
+}
+
+/// What a user who stopped a run should know.
+fn how_to_continue(run: &Run, signal: Signal, arguments: &Arguments) -> String {
+    let again = match (&arguments.skill, &arguments.plan) {
+        (Some(skill), _) => skill.clone(),
+        (None, Some(plan)) => format!("--plan {}", plan.display()),
+        (None, None) => "--all".to_owned(),
+    };
+    format!(
+        "stopped by {} after {} samples, saved in {}; continue with `trainer train {again} --resume`",
+        signal.name(),
+        run.training.samples,
+        run.folder.path().display()
+    )
 }
 
 fn add(sums: &mut [NodeReport; REPORTED_NODES], more: &[NodeReport; REPORTED_NODES]) {
@@ -60,8 +114,8 @@ fn add(sums: &mut [NodeReport; REPORTED_NODES], more: &[NodeReport; REPORTED_NOD
 }
 
 /// Falls per character-minute and speed nearest to every node.
-fn by_node(course: &Course, nodes: &[NodeReport]) -> String {
-    let told = course.nodes().iter().zip(nodes).map(|(node, report)| {
+fn by_node(graph: &TrainingGraph, nodes: &[NodeReport]) -> String {
+    let told = graph.nodes().iter().zip(nodes).map(|(node, report)| {
         let ticks = report.ticks.max(1) as f64;
         let falls = f64::from(report.failed) / (ticks * f64::from(DT_SECS) / 60.0);
         format!("{} {falls:.1}/min {:.2} m/s", node.name, report.speed_mps / ticks)
@@ -69,7 +123,7 @@ fn by_node(course: &Course, nodes: &[NodeReport]) -> String {
     told.collect::<Vec<_>>().join(", ")
 }
 
-fn train(run: &mut Run, iterations: Option<u64>) -> Result<()> {
+fn train(run: &mut Run, iterations: Option<u64>, interrupt: &Interrupt) -> Result<()> {
     let skill = run.training.recipe.skill.clone();
     let bar = ProgressBar::new(run.training.recipe.total_samples());
     let style = "{prefix:>8} {wide_bar} {human_pos}/{human_len} {per_sec} {eta} {msg}";
@@ -80,14 +134,14 @@ fn train(run: &mut Run, iterations: Option<u64>) -> Result<()> {
     bar.reset_eta();
     let mut done = 0;
     let mut nodes = [NodeReport::default(); REPORTED_NODES];
-    while !run.is_done() && iterations.is_none_or(|most| done < most) {
+    while !run.is_done() && iterations.is_none_or(|most| done < most) && interrupt.caught().is_none() {
         let report = run.advance()?;
         done += 1;
-        let p = &report.population;
+        let p = &report.episodes;
         bar.set_position(run.training.samples);
-        let imitated = p.imitation / p.ticks.max(1) as f64;
+        let tracking = p.tracking / p.ticks.max(1) as f64;
         bar.set_message(format!(
-            "style {:.2} task {:.2} imitation {imitated:.2} episode {:.0} kl {:.3} distance {:.2} secs {:.2}+{:.2}+{:.2}",
+            "style {:.2} task {:.2} tracking {tracking:.2} episode {:.0} kl {:.3} distance {:.2} secs {:.2}+{:.2}+{:.2}",
             report.style,
             p.task / p.ticks.max(1) as f64,
             p.episode_ticks as f64 / f64::from(p.episodes.max(1)),
@@ -99,14 +153,16 @@ fn train(run: &mut Run, iterations: Option<u64>) -> Result<()> {
         ));
         add(&mut nodes, &p.nodes);
         if bar.is_hidden() && done % 20 == 0 {
-            println!("{skill} {} {}", run.training.samples, bar.message());
-            if run.training.course().nodes().len() > 2 {
-                println!("{}", by_node(run.training.course(), &nodes));
+            say(format_args!("{skill} {} {}", run.training.samples, bar.message()))?;
+            if run.training.graph().nodes().len() > 2 {
+                say(by_node(run.training.graph(), &nodes))?;
             }
             nodes = Default::default();
         }
     }
-    run.save()?;
+    if done > 0 {
+        run.save()?;
+    }
     bar.finish();
     Ok(())
 }

@@ -8,9 +8,11 @@ use anyhow::{Context, Result, bail};
 use clap::Args;
 use physics_bridge::Model;
 use serde::Serialize;
-use trainer::checkpoint::write_atomically;
 use trainer::clip::{ClipFolder, load_file};
 use trainer::env::{Fitted, fit};
+use trainer::storage::write_atomically;
+
+use super::output::say;
 
 /// Arguments of the verb.
 #[derive(Args)]
@@ -42,9 +44,9 @@ pub(crate) fn run(model: &Model, folder: impl Fn() -> Result<ClipFolder>, a: &Ar
     let file = PathBuf::from(&a.clip);
     let clip = if file.is_file() { load_file(&file)? } else { folder()?.load(&a.clip)? };
     let fitted = fit(&clip, model)?;
-    let (radians, joint) = fitted.motion.outside_limits;
+    let (radians, joint) = &fitted.motion.outside_limits;
     let lowest = fitted.clearances.iter().copied().fold(f32::INFINITY, f32::min);
-    println!(
+    say(format_args!(
         "{}: {:.2} s, {}, {:.2} m/s, lifted by {:.3} m, then {:.3} m in the ground at worst; \
          leaves its joint limits by at most {:.1} degrees ({joint})",
         clip.name,
@@ -54,10 +56,10 @@ pub(crate) fn run(model: &Model, folder: impl Fn() -> Result<ClipFolder>, a: &Ar
         fitted.lift,
         (-lowest).max(0.0),
         radians.to_degrees(),
-    );
+    ))?;
     if let Some(path) = &a.poses {
         write(&fitted, &clip.name, path)?;
-        println!("wrote {}", path.display());
+        say(format_args!("wrote {}", path.display()))?;
     }
     let Some(pictures) = &a.pictures else { return Ok(()) };
     let viewer = viewer_program(a.viewer.as_deref())?;

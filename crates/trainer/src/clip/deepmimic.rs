@@ -1,10 +1,10 @@
 //! DeepMimic's `.txt` clips (Peng et al. 2018): JSON with one list of 44 numbers a frame, y up, quaternions wxyz.
 
 use glam::{Quat, Vec3};
-use policy_core::{BODY_COUNT, Body};
 use serde::Deserialize;
 
-use super::{Clip, ClipError};
+use super::{Clip, ClipError, humanoid};
+use crate::text::quoted;
 
 #[derive(Deserialize)]
 struct File {
@@ -18,27 +18,27 @@ struct File {
 const FRAME: usize = 44;
 
 /// Ball joints and where their quaternions begin.
-const BALLS: [(Body, usize); 8] = [
-    (Body::Torso, 8),
-    (Body::Head, 12),
-    (Body::RightThigh, 16),
-    (Body::RightFoot, 21),
-    (Body::RightUpperArm, 25),
-    (Body::LeftThigh, 30),
-    (Body::LeftFoot, 35),
-    (Body::LeftUpperArm, 39),
+const BALLS: [(&str, usize); 8] = [
+    ("torso", 8),
+    ("head", 12),
+    ("right_thigh", 16),
+    ("right_foot", 21),
+    ("right_upper_arm", 25),
+    ("left_thigh", 30),
+    ("left_foot", 35),
+    ("left_upper_arm", 39),
 ];
 
 /// Hinges and where their angles lie.
-const HINGES: [(Body, usize); 4] =
-    [(Body::RightShin, 20), (Body::RightLowerArm, 29), (Body::LeftShin, 34), (Body::LeftLowerArm, 43)];
+const HINGES: [(&str, usize); 4] =
+    [("right_shin", 20), ("right_lower_arm", 29), ("left_shin", 34), ("left_lower_arm", 43)];
 
 /// Reads the text of a DeepMimic clip.
 ///
 /// # Errors
 /// When it is not such a clip.
 pub fn parse(name: &str, text: &str) -> Result<Clip, ClipError> {
-    let wrong = |message: String| ClipError::Format { clip: name.into(), message };
+    let wrong = |message: String| ClipError::Format { clip: name.into(), message: quoted(&message) };
     let file: File = serde_json::from_str(text).map_err(|e| wrong(e.to_string()))?;
     let looping = match file.looping.as_str() {
         "wrap" => true,
@@ -48,6 +48,7 @@ pub fn parse(name: &str, text: &str) -> Result<Clip, ClipError> {
     let mut clip = Clip {
         name: name.into(),
         looping,
+        bodies: humanoid::bodies(),
         times: Vec::with_capacity(file.frames.len()),
         root_positions: Vec::with_capacity(file.frames.len()),
         local_rotations: Vec::with_capacity(file.frames.len()),
@@ -61,24 +62,25 @@ pub fn parse(name: &str, text: &str) -> Result<Clip, ClipError> {
         // The last frame's duration is zero in these files: nothing follows it.
         time += frame[0];
         clip.root_positions.push(z_up(Vec3::new(frame[1], frame[2], frame[3])));
-        clip.local_rotations.push(rotations(frame));
+        clip.local_rotations.push(rotations(&clip.bodies, frame));
     }
     clip.checked()
 }
 
-fn rotations(frame: &[f32; FRAME]) -> [Quat; BODY_COUNT] {
+fn rotations(bodies: &[String], frame: &[f32; FRAME]) -> Vec<Quat> {
     let quat = |at: usize| {
         let v = z_up(Vec3::new(frame[at + 1], frame[at + 2], frame[at + 3]));
         Quat::from_xyzw(v.x, v.y, v.z, frame[at])
     };
-    let mut rotations = [Quat::IDENTITY; BODY_COUNT];
-    rotations[Body::Pelvis.index()] = quat(4);
+    let mut rotations = vec![Quat::IDENTITY; bodies.len()];
+    let index = |name: &str| bodies.iter().position(|body| body == name).expect("a body of the humanoid");
+    rotations[0] = quat(4);
     for (body, at) in BALLS {
-        rotations[body.index()] = quat(at);
+        rotations[index(body)] = quat(at);
     }
     for (body, at) in HINGES {
         // Their axis is z, which points to the right there: our -y.
-        rotations[body.index()] = Quat::from_rotation_y(-frame[at]);
+        rotations[index(body)] = Quat::from_rotation_y(-frame[at]);
     }
     rotations
 }

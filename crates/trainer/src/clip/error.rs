@@ -83,6 +83,16 @@ pub enum ClipError {
         /// Its seconds.
         found: f32,
     },
+    /// A body that has hinges is not in the clip.
+    #[error("clip {clip}: expected a body {expected}, found {found}")]
+    Body {
+        /// Name of the clip.
+        clip: String,
+        /// Name of the body.
+        expected: String,
+        /// Bodies of the clip.
+        found: String,
+    },
     /// A quaternion is not of unit length.
     #[error("clip {clip}: expected unit quaternions, found another length in frame {frame}, body {body}")]
     Quaternion {

@@ -1,10 +1,11 @@
 //! The project's own clip format: JSON, z up, metres, seconds, quaternions xyzw.
 
 use glam::{Quat, Vec3};
-use policy_core::{BODY_COUNT, BODY_NAMES};
+use policy_core::training::MAX_SKELETON_PARTS;
 use serde::Deserialize;
 
 use super::{Clip, ClipError};
+use crate::text::quoted;
 
 #[derive(Deserialize)]
 struct File {
@@ -23,12 +24,16 @@ struct File {
 /// Reads the text of a JSON clip.
 ///
 /// # Errors
-/// When it is not such a clip, or not one of this skeleton.
+/// When it is not such a clip.
 pub fn parse(name: &str, text: &str) -> Result<Clip, ClipError> {
-    let wrong = |message: String| ClipError::Format { clip: name.into(), message };
+    let wrong = |message: String| ClipError::Format { clip: name.into(), message: quoted(&message) };
     let file: File = serde_json::from_str(text).map_err(|e| wrong(e.to_string()))?;
-    if file.bodies.iter().map(String::as_str).ne(BODY_NAMES) {
-        return Err(wrong(format!("expected the bodies {BODY_NAMES:?}, found {:?}", file.bodies)));
+    let twice = |i: usize| file.bodies[..i].contains(&file.bodies[i]);
+    if !(1..=MAX_SKELETON_PARTS).contains(&file.bodies.len()) || (1..file.bodies.len()).any(twice) {
+        return Err(wrong(format!(
+            "expected 1 to {MAX_SKELETON_PARTS} bodies of different names, found {:?}",
+            file.bodies
+        )));
     }
     for (field, expected, found) in [("up", "z", &file.up), ("quat", "xyzw", &file.quat)] {
         if let Some(found) = found.as_ref().filter(|f| *f != expected) {
@@ -42,11 +47,13 @@ pub fn parse(name: &str, text: &str) -> Result<Clip, ClipError> {
     };
     let mut local_rotations = Vec::with_capacity(file.local_rot.len());
     for (frame, rotations) in file.local_rot.iter().enumerate() {
-        let rotations: &[[f32; 4]; BODY_COUNT] = rotations.as_slice().try_into().map_err(|_| {
-            wrong(format!("expected {BODY_COUNT} rotations in frame {frame}, found {}", rotations.len()))
-        })?;
-        local_rotations.push(rotations.map(Quat::from_array));
+        let (expected, found) = (file.bodies.len(), rotations.len());
+        if found != expected {
+            return Err(wrong(format!("expected {expected} rotations in frame {frame}, found {found}")));
+        }
+        local_rotations.push(rotations.iter().copied().map(Quat::from_array).collect());
     }
     let root_positions = file.root_pos.into_iter().map(Vec3::from_array).collect();
-    Clip { name: name.into(), looping, times: file.times, root_positions, local_rotations }.checked()
+    let bodies = file.bodies.into();
+    Clip { name: name.into(), looping, times: file.times, bodies, root_positions, local_rotations }.checked()
 }

@@ -1,11 +1,12 @@
-//! Demonstration clips: files of motion on the humanoid's skeleton, read, resampled and fitted to its joints.
+//! Demonstration clips: files of motion, read, resampled and fitted to the joints of a skeleton.
 //!
-//! Refuses anything that is not on the 15-body skeleton; retargeting is done elsewhere.
+//! A clip must have a body of the same name for each body of the skeleton that has hinges; retargeting is done elsewhere.
 
 mod deepmimic;
 mod error;
 mod fit;
 mod folder;
+mod humanoid;
 mod json;
 mod motion;
 mod npy;
@@ -13,12 +14,13 @@ mod pickle;
 mod pickle_machine;
 
 pub use error::ClipError;
-pub use fit::{JointFit, JointLimits};
+pub use fit::JointFit;
 pub use folder::{ClipFolder, MOTIONS_VARIABLE, load_file};
 pub use motion::{MOTION_HZ, Motion, TICK_STRIDE, placed};
 
+use std::sync::Arc;
+
 use glam::{Quat, Vec3};
-use policy_core::BODY_COUNT;
 
 /// Longest clip that is read, in frames.
 pub const MAX_FRAMES: usize = 100_000;
@@ -32,10 +34,12 @@ pub struct Clip {
     pub looping: bool,
     /// Time of every frame, ascending from zero.
     pub times: Vec<f32>,
-    /// Position of the pelvis in the world.
+    /// Names of the bodies, the root first.
+    pub bodies: Arc<[String]>,
+    /// Position of the root in the world.
     pub root_positions: Vec<Vec3>,
-    /// Rotation of every body in its parent's frame; entry 0 is the pelvis in the world.
-    pub local_rotations: Vec<[Quat; BODY_COUNT]>,
+    /// Rotation of every body in its parent's frame, `[frames][bodies]`; that of the root in the world.
+    pub local_rotations: Vec<Vec<Quat>>,
 }
 
 impl Clip {
@@ -57,6 +61,15 @@ impl Clip {
             }
         }
         for frame in 0..frames {
+            let (expected, found) = (self.bodies.len(), self.local_rotations[frame].len());
+            if found != expected || found == 0 {
+                return Err(ClipError::Lengths {
+                    clip: name(),
+                    field: "rotations of a frame",
+                    expected,
+                    found,
+                });
+            }
             let finite = self.times[frame].is_finite()
                 && self.root_positions[frame].is_finite()
                 && self.root_positions[frame].abs().max_element() < 1e4
@@ -89,15 +102,15 @@ impl Clip {
         self.times[self.times.len() - 1]
     }
 
-    /// Pelvis position and local rotations at a time within the clip, by interpolation.
+    /// Root position and local rotations at a time within the clip, by interpolation.
     #[must_use]
-    pub fn sample(&self, time: f32) -> (Vec3, [Quat; BODY_COUNT]) {
+    pub fn sample(&self, time: f32) -> (Vec3, Vec<Quat>) {
         let last = self.times.len() - 1;
         let after = self.times.partition_point(|t| *t <= time).clamp(1, last);
         let (a, b) = (after - 1, after);
         let t = ((time - self.times[a]) / (self.times[b] - self.times[a])).clamp(0.0, 1.0);
-        let rotations =
-            std::array::from_fn(|i| self.local_rotations[a][i].slerp(self.local_rotations[b][i], t));
+        let pairs = self.local_rotations[a].iter().zip(&self.local_rotations[b]);
+        let rotations = pairs.map(|(a, b)| a.slerp(*b, t)).collect();
         (self.root_positions[a].lerp(self.root_positions[b], t), rotations)
     }
 
@@ -108,16 +121,18 @@ impl Clip {
             * Vec3::new(1.0, 1.0, 0.0)
     }
 
-    /// Every frame this much of the way, in [0, 1], to a pose of `other`: how it begins, half-way to its mirror image. The way
-    /// that is gone shrinks as much. A smaller and slower motion between this one and that pose.
+    /// Every frame this much of the way, in [0, 1], to a pose of `other`, which has the same bodies: how it begins, half-way to its
+    /// mirror image. The way of the root shrinks as much. A smaller and slower motion between this one and that pose.
     #[must_use]
     pub fn towards(&self, other: &Self, share: f32) -> Self {
-        let (first, mirrored) = (other.root_positions[0], other.mirrored().local_rotations[0]);
-        let rotations: [Quat; BODY_COUNT] =
-            std::array::from_fn(|i| other.local_rotations[0][i].slerp(mirrored[i], 0.5));
+        let (first, mirrored) = (other.root_positions[0], &other.mirrored().local_rotations[0]);
+        let pairs = other.local_rotations[0].iter().zip(mirrored);
+        let rotations: Vec<Quat> = pairs.map(|(one, other)| one.slerp(*other, 0.5)).collect();
         let root =
             |p: &Vec3| Vec3::new((1.0 - share) * p.x, (1.0 - share) * p.y, p.z + share * (first.z - p.z));
-        let turn = |frame: &[Quat; BODY_COUNT]| std::array::from_fn(|i| frame[i].slerp(rotations[i], share));
+        let turn = |frame: &Vec<Quat>| -> Vec<Quat> {
+            frame.iter().zip(&rotations).map(|(from, to)| from.slerp(*to, share)).collect()
+        };
         Self {
             name: format!("{} towards {}", self.name, other.name),
             root_positions: self.root_positions.iter().map(root).collect(),
@@ -126,12 +141,13 @@ impl Clip {
         }
     }
 
-    /// The mirror image: left and right swapped, y turned round.
+    /// The mirror image: y negated, and bodies with `left` in their names swapped with those with `right`.
     #[must_use]
     pub fn mirrored(&self) -> Self {
         let flip = |q: Quat| Quat::from_xyzw(-q.x, q.y, -q.z, q.w);
+        let twins: Vec<usize> = self.bodies.iter().enumerate().map(|(i, name)| self.twin(i, name)).collect();
         let mirror =
-            |rotations: &[Quat; BODY_COUNT]| std::array::from_fn(|i| flip(rotations[MIRRORED_BODY[i]]));
+            |rotations: &Vec<Quat>| -> Vec<Quat> { twins.iter().map(|i| flip(rotations[*i])).collect() };
         Self {
             name: format!("{} (mirrored)", self.name),
             root_positions: self.root_positions.iter().map(|p| Vec3::new(p.x, -p.y, p.z)).collect(),
@@ -139,10 +155,17 @@ impl Clip {
             ..self.clone()
         }
     }
-}
 
-/// The body whose motion a body takes in the mirror.
-const MIRRORED_BODY: [usize; BODY_COUNT] = [0, 1, 2, 6, 7, 8, 3, 4, 5, 12, 13, 14, 9, 10, 11];
+    /// The body whose motion a body has in the mirror; itself for one in the middle.
+    fn twin(&self, index: usize, name: &str) -> usize {
+        let other = match (name.contains("left"), name.contains("right")) {
+            (true, false) => name.replace("left", "right"),
+            (false, true) => name.replace("right", "left"),
+            _ => return index,
+        };
+        self.bodies.iter().position(|body| *body == other).unwrap_or(index)
+    }
+}
 
 #[cfg(test)]
 pub(crate) mod tests;

@@ -1,18 +1,20 @@
 //! IsaacGym's AMP clips: a `.npy` file with one pickled dictionary of local rotations (xyzw), root translation and rate.
-//! The 15 bodies are this skeleton's, in its order.
+//! The bodies are the humanoid's, in its order.
 
 use glam::{Quat, Vec3};
-use policy_core::BODY_COUNT;
 
 use super::pickle::{Id, Object, Pickle};
-use super::{Clip, ClipError};
+use super::{Clip, ClipError, humanoid};
+use crate::text::quoted;
 
 /// Reads the bytes of an AMP clip.
 ///
 /// # Errors
 /// When it is not such a clip.
 pub fn parse(name: &str, bytes: &[u8]) -> Result<Clip, ClipError> {
-    read(name, bytes).map_err(|message| ClipError::Format { clip: name.into(), message })?.checked()
+    read(name, bytes)
+        .map_err(|message| ClipError::Format { clip: name.into(), message: quoted(&message) })?
+        .checked()
 }
 
 fn read(name: &str, bytes: &[u8]) -> Result<Clip, String> {
@@ -22,11 +24,10 @@ fn read(name: &str, bytes: &[u8]) -> Result<Clip, String> {
         |of: Id, key: &str| pickle.item(of, key).ok_or_else(|| format!("expected `{key}`, found none"));
     let rotations = array(&pickle, item(item(dict, "rotation")?, "arr")?)?;
     let positions = array(&pickle, item(item(dict, "root_translation")?, "arr")?)?;
-    if rotations.shape.len() != 3 || rotations.shape[1..] != [BODY_COUNT, 4] {
-        return Err(format!(
-            "expected rotations of shape [frames, {BODY_COUNT}, 4], found {:?}",
-            rotations.shape
-        ));
+    let bodies = humanoid::bodies();
+    let count = bodies.len();
+    if rotations.shape.len() != 3 || rotations.shape[1..] != [count, 4] {
+        return Err(format!("expected rotations of shape [frames, {count}, 4], found {:?}", rotations.shape));
     }
     if positions.shape != [rotations.shape[0], 3] {
         return Err(format!("expected translations of shape [frames, 3], found {:?}", positions.shape));
@@ -40,13 +41,14 @@ fn read(name: &str, bytes: &[u8]) -> Result<Clip, String> {
         return Err(format!("expected 1 to 1000 in `fps`, found {fps}"));
     }
     let quat = |v: &[f32]| Quat::from_xyzw(v[0], v[1], v[2], v[3]);
-    let frame = |v: &[f32]| std::array::from_fn(|i| quat(&v[4 * i..4 * i + 4]));
+    let frame = |v: &[f32]| v.chunks_exact(4).map(quat).collect();
     Ok(Clip {
         name: name.into(),
         looping: false,
+        bodies,
         times: (0..rotations.shape[0]).map(|i| i as f32 / fps).collect(),
         root_positions: positions.values.chunks_exact(3).map(Vec3::from_slice).collect(),
-        local_rotations: rotations.values.chunks_exact(4 * BODY_COUNT).map(frame).collect(),
+        local_rotations: rotations.values.chunks_exact(4 * count).map(frame).collect(),
     })
 }
 

@@ -1,66 +1,81 @@
-//! What a character is asked to do during an episode: a target that is renewed, and a place on a course that moves.
+//! What a character is told to do during an episode: a target that is renewed, and a position on the graph that moves.
 
 use glam::Vec2;
-use policy_core::{RISE_SECONDS, TARGET_RANGE_METRES};
+use physics_bridge::CONTROL_HZ;
+use policy_core::training::{FallDetector, Heights, RISE_SECONDS, TARGET_RANGE_METRES, fall_height};
+use policy_core::{GraphPosition, NodeId, PathId};
 
-use super::config::EnvironmentConfig;
-use super::course::{Course, Place};
-use super::fallen::FallRule;
+use super::graph::TrainingGraph;
 use crate::Rng;
 
+mod config;
+
+pub use config::CommandConfig;
+
 /// Seconds of a control tick.
-pub const DT_SECS: f32 = 1.0 / 30.0;
+pub const DT_SECS: f32 = 1.0 / CONTROL_HZ as f32;
 
 /// Numbers of [`Command::intent_into`].
 pub const INTENT_LEN: usize = 2;
 
-/// Target and place on the course of one character.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+/// Seconds of a sweep to the end of a path and back, least and most.
+const SWEEP_SECS: [f32; 2] = [4.0, 8.0];
+
+/// Target and position on the graph of one character.
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Command {
     /// Where to go, world.
     pub target: Vec2,
-    /// Where on the course it acts.
-    pub place: Place,
+    /// Where on the graph it acts.
+    pub position: GraphPosition,
     /// True when the target is to be reached and stood at.
     pub stop: bool,
-    path: usize,
+    path: PathId,
     coordinate: f32,
-    /// Coordinate that is asked for; the present one follows as fast as the edges allow.
+    /// Requested coordinate; the present one follows as fast as the edges allow.
     asked: f32,
-    /// Where the asked coordinate is going.
+    /// Where the requested coordinate is going.
     goal: f32,
     /// Coordinate a tick; zero for one that rests.
     rate: f32,
     /// True for a coordinate that goes to and fro over the whole path.
     sweeps: bool,
-    /// Ticks that a moving coordinate stays where it came to.
+    /// Ticks that a moving coordinate stays where it arrived.
     rest_ticks: u32,
-    /// Ticks that it has been held back, to rise first.
-    rising_ticks: u32,
+    /// Holds it back in a low gait until the character stands.
+    fall: FallDetector,
     target_ticks: u32,
     /// Direction of a stick held by a player, radians; `None` for targets fixed in the world.
     stick: Option<f32>,
 }
 
+impl Default for Command {
+    /// Nowhere to go, at the first node.
+    fn default() -> Self {
+        let (path, node) = (PathId::new(0), NodeId::new(0));
+        Self::resting(path, 0.0, GraphPosition::node(node))
+    }
+}
+
 impl Command {
-    /// A command at the start of an episode, on a random path of the course, `at_node` or anywhere. [`Command::aim`] gives it
+    /// A command at the start of an episode, on a random path of the graph, `at_node` or anywhere. [`Command::aim`] gives it
     /// a target.
     #[must_use]
-    pub fn start(config: &EnvironmentConfig, course: &Course, at_node: bool, rng: &mut Rng) -> Self {
-        let path = rng.index(course.paths());
-        if config.alone {
-            return Self::at(course, path, course.end(path));
+    pub fn start(config: &CommandConfig, graph: &TrainingGraph, at_node: bool, rng: &mut Rng) -> Self {
+        let path = graph.sample_path(rng);
+        if config.stay_at_end {
+            return Self::at(graph, path, graph.end(path));
         }
-        let coordinate = if at_node { course.draw_node(path, rng) } else { course.draw(path, rng) };
-        let mut command = Self::at(course, path, coordinate);
+        let coordinate = if at_node { graph.sample_node(path, rng) } else { graph.sample(path, rng) };
+        let mut command = Self::at(graph, path, coordinate);
         // Half of the others move.
-        let end = course.end(path);
-        command.sweeps = end > 0.0 && !at_node && rng.chance(config.sweep);
+        let end = graph.end(path);
+        command.sweeps = end > 0.0 && !at_node && rng.chance(config.sweep_share);
         if command.sweeps {
             command.goal = if rng.chance(0.5) { end } else { 0.0 };
-            command.rate = 2.0 * end * DT_SECS / rng.range(config.sweep_secs[0], config.sweep_secs[1]);
+            command.rate = 2.0 * end * DT_SECS / rng.range(SWEEP_SECS[0], SWEEP_SECS[1]);
         } else if end > 0.0 && rng.chance(0.5) {
-            command.go_elsewhere(config, course, rng);
+            command.go_elsewhere(config, graph, rng);
         }
         command
     }
@@ -70,116 +85,126 @@ impl Command {
     /// # Panics
     /// When the node is on no path.
     #[must_use]
-    pub fn start_at(config: &EnvironmentConfig, course: &Course, node: usize, rng: &mut Rng) -> Self {
-        let through = (0..course.paths()).filter(|path| course.path(*path).contains(&node));
-        let path = through.clone().nth(rng.index(through.count())).expect("an index below the count");
-        let coordinate = course.path(path).iter().position(|n| *n == node).expect("a path through it") as f32;
-        let mut command = Self::at(course, path, coordinate);
+    pub fn start_at(config: &CommandConfig, graph: &TrainingGraph, node: usize, rng: &mut Rng) -> Self {
+        let coordinates = graph.paths().iter().enumerate().filter_map(|(index, path)| {
+            Some((PathId::new(index), path.coordinate(GraphPosition::node(NodeId::new(node)))?))
+        });
+        let through = rng.index(coordinates.clone().count());
+        let (path, coordinate) = coordinates.clone().nth(through).expect("an index below the count");
+        let mut command = Self::at(graph, path, coordinate);
         if rng.chance(0.5) {
-            command.go_elsewhere(config, course, rng);
+            command.go_elsewhere(config, graph, rng);
         }
         command
     }
 
     /// At rest at a coordinate of a path.
-    fn at(course: &Course, path: usize, coordinate: f32) -> Self {
-        let place = course.place(path, coordinate);
-        Self { path, coordinate, asked: coordinate, goal: coordinate, place, ..Self::default() }
+    pub(super) fn at(graph: &TrainingGraph, path: PathId, coordinate: f32) -> Self {
+        Self::resting(path, coordinate, graph.position(path, coordinate))
+    }
+
+    fn resting(path: PathId, coordinate: f32, position: GraphPosition) -> Self {
+        Self {
+            target: Vec2::ZERO,
+            position,
+            stop: false,
+            path,
+            coordinate,
+            asked: coordinate,
+            goal: coordinate,
+            rate: 0.0,
+            sweeps: false,
+            rest_ticks: 0,
+            fall: FallDetector::default(),
+            target_ticks: 0,
+            stick: None,
+        }
     }
 
     /// Lets the coordinate go to another one, and from there to others.
-    fn go_elsewhere(&mut self, config: &EnvironmentConfig, course: &Course, rng: &mut Rng) {
+    fn go_elsewhere(&mut self, config: &CommandConfig, graph: &TrainingGraph, rng: &mut Rng) {
         self.rate = DT_SECS / rng.range(config.edge_sweep_secs[0], config.edge_sweep_secs[1]);
-        self.goal = course.draw(self.path, rng);
+        self.goal = graph.sample(self.path, rng);
     }
 
     /// Sets the first target of an episode that starts at `position` with `heading`.
     pub fn aim(
         &mut self,
-        config: &EnvironmentConfig,
-        course: &Course,
+        config: &CommandConfig,
+        graph: &TrainingGraph,
         (position, heading): (Vec2, f32),
         rng: &mut Rng,
     ) {
-        self.stick = rng.chance(config.stick).then_some(heading);
+        self.stick = rng.chance(config.stick_share).then_some(heading);
         self.renew_target(config, position, Some(heading), rng);
-        self.follow_stick(course, position);
+        self.follow_stick(graph, position);
     }
 
-    /// Writes what a critic is to know of where the coordinate is going: how far what is asked for and what it goes to lie
-    /// from where it is.
+    /// Writes where the coordinate is going, for the critic: distances to the requested coordinate and to the goal.
     pub fn intent_into(&self, out: &mut [f32]) {
         let intent = [self.asked - self.coordinate, self.goal - self.coordinate];
         out.iter_mut().zip(intent).for_each(|(out, value)| *out = value);
     }
 
-    /// True when it has been held back for longer than a rise may take.
+    /// True when it has been held back for longer than standing up may take.
     #[must_use]
     pub fn stuck(&self) -> bool {
-        self.rising_ticks as f32 * DT_SECS >= RISE_SECONDS
+        self.fall.rising_seconds() >= RISE_SECONDS
     }
 
-    /// True when it has been held back for longer than a rise at ease takes: what is asked for is not done.
+    /// True when it is held back and the character should have stood up by now: the command is not followed.
     #[must_use]
     pub fn is_late(&self) -> bool {
-        self.rising_ticks as f32 * DT_SECS >= EASY_RISE_SECONDS
+        self.fall.is_late()
     }
 
-    /// Moves the command on by a tick. As in a game, the coordinate goes from where low is right to where it is not once the
-    /// character has risen: once `low`, for the fall rule there, is false.
+    /// Advances by a tick, by the game's rules: the position crosses edges no faster than their seconds, and leaving a low gait
+    /// requires standing first.
     pub fn advance(
         &mut self,
-        config: &EnvironmentConfig,
-        course: &Course,
-        position: Vec2,
-        low: impl FnOnce(FallRule) -> bool,
+        config: &CommandConfig,
+        graph: &TrainingGraph,
+        root: Vec2,
+        heights: Heights,
         rng: &mut Rng,
     ) {
         self.target_ticks = self.target_ticks.saturating_sub(1);
         if self.target_ticks == 0 {
-            self.renew_target(config, position, None, rng);
+            self.renew_target(config, root, None, rng);
         }
         if self.rate > 0.0 {
             self.asked += (self.goal - self.asked).clamp(-self.rate, self.rate);
             if self.sweeps && self.asked == self.goal {
-                self.goal = if self.goal > 0.0 { 0.0 } else { course.end(self.path) };
+                self.goal = if self.goal > 0.0 { 0.0 } else { graph.end(self.path) };
             }
             self.rest_ticks = self.rest_ticks.saturating_sub(u32::from(self.asked == self.goal));
             if self.asked == self.goal && self.rest_ticks == 0 {
                 let secs = rng.range(config.edge_rest_secs[0], config.edge_rest_secs[1]);
                 self.rest_ticks = (secs / DT_SECS) as u32;
-                self.goal = course.draw(self.path, rng);
-                if rng.chance(config.jump) {
+                self.goal = graph.sample(self.path, rng);
+                if rng.chance(config.jump_share) {
                     self.asked = self.goal;
                 }
             }
         }
-        let secs = course.edge_secs(self.place);
-        let most = if secs > 0.0 { DT_SECS / secs } else { f32::INFINITY };
-        let coordinate = self.coordinate + (self.asked - self.coordinate).clamp(-most, most);
-        let place = course.place(self.path, coordinate);
-        let [from, to] = [self.place, place].map(|place| course.fall(place));
-        if from.rises_to(to) && low(to) {
-            self.rising_ticks += 1;
-        } else {
-            (self.coordinate, self.place, self.rising_ticks) = (coordinate, place, 0);
+        let (rules, mut next) = (graph.policy_graph(), self.position);
+        rules.travel(&mut next, graph.position(self.path, self.asked), DT_SECS);
+        let limits = [self.position, next].map(|position| fall_height(rules, position));
+        if !self.fall.holds_back(limits, heights, DT_SECS) {
+            self.position = next;
+            let coordinate = graph.paths().get(self.path.index()).and_then(|path| path.coordinate(next));
+            self.coordinate = coordinate.unwrap_or(self.coordinate);
         }
-        self.follow_stick(course, position);
+        self.follow_stick(graph, root);
     }
 
-    fn renew_target(
-        &mut self,
-        config: &EnvironmentConfig,
-        position: Vec2,
-        heading: Option<f32>,
-        rng: &mut Rng,
-    ) {
+    fn renew_target(&mut self, config: &CommandConfig, position: Vec2, heading: Option<f32>, rng: &mut Rng) {
         let secs = rng.range(config.target_secs[0], config.target_secs[1]);
         self.target_ticks = (secs / DT_SECS).max(1.0) as u32;
-        self.stop = rng.chance(config.stop);
+        self.stop = rng.chance(config.stop_share);
         if let Some(direction) = &mut self.stick {
-            // A player turns by up to a quarter; at a start from standing and now and then he wants to go anywhere.
-            let anywhere = rng.chance(0.1);
+            // A player mostly turns by up to a quarter, and in a hurry by any angle.
+            let anywhere = rng.chance(config.any_direction_share);
             *direction = if anywhere { rng.angle() } else { *direction + rng.range(-1.0, 1.0) * QUARTER };
             return;
         }
@@ -195,10 +220,10 @@ impl Command {
 
     /// A stick's target goes ahead of the character; below the second node of a path that begins with standing it is as
     /// near as the stick is pushed little.
-    fn follow_stick(&mut self, course: &Course, position: Vec2) {
+    fn follow_stick(&mut self, graph: &TrainingGraph, position: Vec2) {
         let Some(direction) = self.stick else { return };
-        let begins_standing = course.nodes()[course.path(self.path)[0]].speed_mps == 0.0;
-        let push = match (self.stop, begins_standing && course.end(self.path) > 0.0) {
+        let begins_standing = graph.speed_mps(graph.position(self.path, 0.0)) == 0.0;
+        let push = match (self.stop, begins_standing && graph.end(self.path) > 0.0) {
             (true, _) => 0.0,
             (false, true) => self.asked.min(1.0),
             (false, false) => 1.0,
@@ -206,9 +231,6 @@ impl Command {
         self.target = position + push * TARGET_RANGE_METRES * Vec2::from_angle(direction);
     }
 }
-
-/// Seconds that a rise takes at ease.
-const EASY_RISE_SECONDS: f32 = 1.0;
 
 const QUARTER: f32 = std::f32::consts::FRAC_PI_2;
 

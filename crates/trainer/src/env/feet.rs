@@ -1,38 +1,35 @@
-//! Feet of clips on the ground. People bend their toes as a heel rises; the humanoid's foot is one piece, so the same ankle puts
-//! its tip into the floor, and a clip that is lifted for that stands on nothing.
+//! Feet of clips on the ground. People bend their toes as a heel rises. A foot of one piece puts its tip into the floor with the
+//! same ankle, and a clip that is lifted for that stands on nothing.
 
 use physics_bridge::{Character, Pose, PoseError};
-use policy_core::{Body, CharacterState, JOINT_NAMES};
+use policy_core::{BodyId, CharacterState, Skeleton};
 
-use crate::clip::JointLimits;
-
-/// Feet and the joints that tip them.
-const ANKLES: [(Body, &str); 2] = [(Body::RightFoot, "right_ankle_y"), (Body::LeftFoot, "left_ankle_y")];
+/// A hinge tips its foot when its axis is this near to the y axis: least |y| of the unit axis.
+const TIPPING_AXIS: f32 = 0.9;
 
 /// Halvings of the angle that an ankle is turned by.
 const HALVINGS: usize = 10;
 
 /// Turns each ankle of a pose towards a level foot, as little as brings no point of the foot lower than the ground, or than
 /// its sole would be: a foot that is in the ground as a whole stays there.
-pub(super) fn put_on_ground(
-    pose: &mut Pose,
-    limits: &JointLimits,
-    character: &mut Character,
-) -> Result<(), PoseError> {
+///
+/// A foot without a hinge that tips it is left alone.
+pub(super) fn put_on_ground(pose: &mut Pose, character: &mut Character) -> Result<(), PoseError> {
     character.set_pose(&pose.qpos, &pose.qvel)?;
-    for (foot, joint) in ANKLES {
-        let ankle = JOINT_NAMES.iter().position(|name| *name == joint).expect("an ankle of the humanoid");
+    let skeleton = character.model().skeleton().clone();
+    let mut state = CharacterState::new(&skeleton);
+    for &foot in skeleton.feet() {
+        let Some((ankle, sign, [low, high])) = tipping_joint(&skeleton, foot) else { continue };
         let lowest = character.clearance_of(foot);
         if lowest >= 0.0 {
             continue;
         }
-        let mut state = CharacterState::default();
         character.sense_into(&mut state);
         let ahead = state.body(foot).rotation * glam::Vec3::X;
         let was = pose.qpos[7 + ankle];
-        // A turn by +y tips the toes down.
-        let level = was + f64::from(ahead.z.clamp(-1.0, 1.0).asin());
-        let level = level.clamp(f64::from(limits.low[ankle]), f64::from(limits.high[ankle]));
+        // A turn about +y tips the toes down.
+        let level = was + f64::from(sign * ahead.z.clamp(-1.0, 1.0).asin());
+        let level = level.clamp(f64::from(low), f64::from(high));
         let mut lowest_at = |share: f64| {
             pose.qpos[7 + ankle] = was + share * (level - was);
             character.set_pose(&pose.qpos, &pose.qvel).map(|()| character.clearance_of(foot))
@@ -56,11 +53,19 @@ pub(super) fn put_on_ground(
     Ok(())
 }
 
+/// Index, sign and range of the hinge that tips a foot about the y axis.
+fn tipping_joint(skeleton: &Skeleton, foot: BodyId) -> Option<(usize, f32, [f32; 2])> {
+    skeleton.joints().iter().enumerate().find_map(|(index, joint)| {
+        let along = joint.axis.normalize().y;
+        (joint.body == foot && along.abs() > TIPPING_AXIS).then_some((index, along.signum(), joint.range))
+    })
+}
+
 #[cfg(test)]
 mod tests {
     use std::path::Path;
 
-    use physics_bridge::{Model, QVEL_LEN};
+    use physics_bridge::Model;
 
     use super::*;
 
@@ -72,20 +77,23 @@ mod tests {
         let model = Model::load(path).unwrap();
         let mut character = Character::new(&model);
         character.stand_at(0.0, 0.0, policy_core::Heading::FORWARD, 0.0).unwrap();
-        let mut pose = Pose { qvel: [0.0; QVEL_LEN], ..character.pose() };
+        let mut pose = character.pose();
+        pose.qvel.fill(0.0);
         pose.qpos[2] += lift;
         pose.qpos[RIGHT_ANKLE_Y] += ankle;
-        let before = pose;
-        let limits = JointLimits { low: model.joint_limits().0, high: model.joint_limits().1 };
-        put_on_ground(&mut pose, &limits, &mut character).unwrap();
+        let before = pose.clone();
+        put_on_ground(&mut pose, &mut character).unwrap();
         let others = |pose: &Pose| {
-            let mut others = pose.qpos;
+            let mut others = pose.qpos.clone();
             others[RIGHT_ANKLE_Y] = 0.0;
             others
         };
         assert_eq!(others(&pose), others(&before), "nothing but the ankle is turned");
         character.set_pose(&pose.qpos, &pose.qvel).unwrap();
-        (pose.qpos[RIGHT_ANKLE_Y] - before.qpos[RIGHT_ANKLE_Y], character.clearance_of(Body::RightFoot))
+        (
+            pose.qpos[RIGHT_ANKLE_Y] - before.qpos[RIGHT_ANKLE_Y],
+            character.clearance_of(model.skeleton().body_named("right_foot").unwrap()),
+        )
     }
 
     #[test]

@@ -4,7 +4,7 @@ use physics_bridge::{Character, Model, PoseError};
 use policy_core::CharacterState;
 
 use super::feet::put_on_ground;
-use crate::clip::{Clip, ClipError, JointLimits, Motion};
+use crate::clip::{Clip, ClipError, Motion};
 
 /// Why clips can't be made ready.
 #[derive(Debug, thiserror::Error)]
@@ -14,7 +14,7 @@ pub enum SourceError {
     #[error(transparent)]
     Clip(#[from] ClipError),
     /// A fitted pose is refused by the physics.
-    #[error("clip {clip}: pose {index} is no pose of the humanoid")]
+    #[error("clip {clip}: pose {index} is no pose of the character")]
     Pose {
         /// Name of the clip.
         clip: String,
@@ -42,14 +42,12 @@ pub struct Fitted {
 /// in.
 ///
 /// # Errors
-/// When the clip is too short or the physics refuses a pose.
+/// When the clip is too short, lacks a body, or the physics refuses a pose.
 pub fn fit(clip: &Clip, model: &Model) -> Result<Fitted, SourceError> {
-    let (low, high) = model.joint_limits();
-    let limits = JointLimits { low, high };
-    let mut motion = Motion::fit(clip, limits)?;
+    let mut motion = Motion::fit(clip, model.skeleton())?;
     let mut character = Character::new(model);
     for (index, pose) in motion.poses.iter_mut().enumerate() {
-        put_on_ground(pose, &limits, &mut character).map_err(refused(&clip.name, index))?;
+        put_on_ground(pose, &mut character).map_err(refused(&clip.name, index))?;
     }
     motion.differentiate();
     let mut lowest = states(&motion, model)?.1;
@@ -63,7 +61,7 @@ pub fn fit(clip: &Clip, model: &Model) -> Result<Fitted, SourceError> {
 /// State and clearance of every pose by the physics' forward kinematics.
 fn states(motion: &Motion, model: &Model) -> Result<(Vec<CharacterState>, Vec<f32>), SourceError> {
     let mut character = Character::new(model);
-    let mut states = vec![CharacterState::default(); motion.poses.len()];
+    let mut states = vec![CharacterState::new(model.skeleton()); motion.poses.len()];
     let mut clearances = Vec::with_capacity(motion.poses.len());
     for (index, (pose, state)) in motion.poses.iter().zip(&mut states).enumerate() {
         character.set_pose(&pose.qpos, &pose.qvel).map_err(refused(&motion.name, index))?;

@@ -1,28 +1,38 @@
-//! The characters that learn: start states, targets, blends, pushes, rewards and the ends of episodes.
+//! The environments that policies learn in, in the parts of the field: [`observation`](Env::observe_into), [`Command`],
+//! [`reward`](RewardConfig), [`termination`](TerminationConfig), [`reset`](ResetConfig).
 //!
 //! Observation, action and discriminator features are policy-core's, physics is physics-bridge's.
 
-mod agent;
 mod command;
 mod config;
-mod course;
 mod demonstrations;
-mod fallen;
+#[expect(clippy::module_inception, reason = "the environment itself, beside its parts")]
+mod env;
+mod exploration;
 mod feet;
 mod fitted;
-mod imitation;
+mod graph;
 mod normalisers;
-mod population;
+mod observation;
+mod randomisation;
+mod reset;
 mod reward;
+mod termination;
+mod track_clip;
+mod tracking;
+mod vec_env;
 
-pub use agent::{Agent, Episode, PUSH_SECS, Recovery};
-pub use command::{Command, DT_SECS};
-pub use config::{After, EnvironmentConfig, Fall, Start, Task};
-pub use course::{Course, CourseNode, Place};
-pub use demonstrations::{Demonstrations, Moment, StartPose};
-pub use fallen::{FallRule, stands};
+pub use command::{Command, CommandConfig, DT_SECS};
+pub use config::EnvironmentConfig;
+pub use demonstrations::{ClipPhase, Demonstrations, ReferenceState};
+pub use env::{Env, EnvContext, Episode};
+pub use exploration::ExplorationConfig;
 pub use fitted::{Fitted, SourceError, fit};
-pub use imitation::Likeness;
+pub use graph::{GraphNode, TrainingGraph};
 pub use normalisers::Normalisers;
-pub use population::{NodeReport, Population, PopulationReport, REPORTED_NODES, Stage};
-pub use reward::{Manner, RewardTerms, slide_mps, standing_reward, target_reward};
+pub use randomisation::{PUSH_SECS, RandomisationConfig};
+pub use reset::{HandOver, HandOverConfig, ResetConfig};
+pub use reward::{Pace, RewardConfig, RewardTerms, Task, foot_slip_mps, standing_reward, target_reward};
+pub use termination::{Termination, TerminationConfig, TerminationHeights, TerminationRule};
+pub use tracking::TrackedState;
+pub use vec_env::{EpisodeReport, NodeReport, REPORTED_NODES, VecEnv};

@@ -1,7 +1,8 @@
 //! Means and deviations of everything observed in the clips: one for the whole graph.
 
 use physics_bridge::Model;
-use policy_core::{FRAME_LEN, Normaliser, OBSERVATION_LEN, discriminator_frame_into, observe_into};
+use policy_core::observe_into;
+use policy_core::training::{LEAST_DEVIATION, Normaliser, discriminator_frame_into};
 
 use super::fitted::{Fitted, SourceError, fit};
 use crate::clip::Clip;
@@ -9,9 +10,9 @@ use crate::clip::Clip;
 /// The normalisers of the whole graph.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Normalisers {
-    /// Of the 223 observed numbers.
+    /// Of an observation, without the target.
     pub observation: Normaliser,
-    /// Of the 125 numbers of a discriminator frame.
+    /// Of a discriminator frame.
     pub frame: Normaliser,
 }
 
@@ -25,18 +26,19 @@ impl Normalisers {
     /// When there is no clip.
     pub fn from_clips(clips: &[Clip], model: &Model) -> Result<Self, SourceError> {
         assert!(!clips.is_empty(), "a normaliser needs a clip");
-        let mut observation = Moments::new(OBSERVATION_LEN);
-        let mut frame = Moments::new(FRAME_LEN);
+        let skeleton = model.skeleton();
+        let mut observation = Moments::new(skeleton.observation_len());
+        let mut frame = Moments::new(skeleton.frame_len());
         for clip in clips {
             for clip in [clip.clone(), clip.mirrored()] {
                 let Fitted { states, .. } = fit(&clip, model)?;
                 let weight = 1.0 / states.len() as f64;
                 for state in &states {
-                    let mut seen = [0.0; OBSERVATION_LEN];
-                    observe_into(state, &mut seen);
+                    let mut seen = vec![0.0; skeleton.observation_len()];
+                    observe_into(skeleton, state, &mut seen);
                     observation.add(&seen, weight);
-                    let mut seen = [0.0; FRAME_LEN];
-                    discriminator_frame_into(state, &mut seen);
+                    let mut seen = vec![0.0; skeleton.frame_len()];
+                    discriminator_frame_into(skeleton, state, &mut seen);
                     frame.add(&seen, weight);
                 }
             }
@@ -69,7 +71,7 @@ impl Moments {
         let mean: Vec<f32> = self.sum.iter().map(|s| (s / self.weight) as f32).collect();
         let deviation = |(sum, square): (&f64, &f64)| {
             let variance = square / self.weight - (sum / self.weight).powi(2);
-            (variance.max(0.0).sqrt() as f32).max(policy_core::LEAST_DEVIATION)
+            (variance.max(0.0).sqrt() as f32).max(LEAST_DEVIATION)
         };
         let deviation: Vec<f32> = self.sum.iter().zip(&self.square).map(deviation).collect();
         Normaliser::from_mean_and_deviation(&mean, &deviation)

@@ -1,39 +1,111 @@
-//! Task rewards, pure functions of what happened in a tick. All lie in [0, 1].
+//! Task rewards: pure functions of what happened in a tick. All lie in [0, 1].
 
 use glam::{Vec2, Vec3};
 use physics_bridge::Contact;
-use policy_core::{Body, CharacterState, Heading};
+use policy_core::{BodyId, CharacterState, Heading, Skeleton};
+use serde::{Deserialize, Serialize};
+
+/// What the task reward is for.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Task {
+    /// Going to the target at the commanded speed, facing it.
+    #[default]
+    Target,
+    /// Standing: root and head high, upright, still.
+    Stand,
+}
+
+/// What a tick is worth.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+pub struct RewardConfig {
+    /// What the task reward is for.
+    pub task: Task,
+    /// Weight of the task reward. The style reward gets what task and tracking leave of 1. Where skills are trained together,
+    /// a factor on the weight in the last phase of each skill's own recipe.
+    pub task_weight: f32,
+    /// Least scale of the speed reward, metres per second. A slow gait needs a small one, or standing still is almost as good.
+    pub speed_scale_mps: f32,
+    /// Weight of the squared sideways speed beside the squared error of the speed.
+    pub sideways_weight: f32,
+    /// Share of the speed reward that falls evenly with the velocity error, from 1 at none to 0 at twice the commanded speed.
+    /// It has a slope where the bells are flat: right after the stick was flipped.
+    pub linear_speed_share: f32,
+    /// Share of the facing reward that only a character that nearly faces its target gets.
+    pub strict_facing_share: f32,
+    /// Share of the task reward for the height of the root: that of the clips at the position on the graph.
+    pub height_share: f32,
+    /// Weight of the reward for tracking a clip. Above zero an episode fails when the tracking error exceeds its threshold,
+    /// and is truncated at the clip's end. Where skills are trained together, trackers get it beside the other rewards.
+    pub tracking_weight: f32,
+    /// Share of episodes, of skills trained together, that start at a node and track the clips of every node that they rest at.
+    pub tracking_share: f32,
+    /// Penalty of a failure. What failing forgoes weighs little beside style once falls are a minute apart.
+    pub fall_cost: f32,
+    /// Foot-slip penalty each tick, for 1 m/s of feet that bear all the weight; where the character should be upright.
+    pub foot_slip_cost: f32,
+    /// Height of a standing character's root above the ground, metres; for [`Task::Stand`].
+    pub standing_root_metres: f32,
+    /// Height of a standing character's head above the ground, metres; for [`Task::Stand`].
+    pub standing_head_metres: f32,
+}
+
+impl Default for RewardConfig {
+    fn default() -> Self {
+        Self {
+            task: Task::Target,
+            task_weight: 0.5,
+            speed_scale_mps: 0.6,
+            sideways_weight: 0.25,
+            linear_speed_share: 0.0,
+            strict_facing_share: 0.0,
+            height_share: 0.0,
+            tracking_weight: 0.0,
+            tracking_share: 0.0,
+            fall_cost: 0.0,
+            foot_slip_cost: 0.0,
+            standing_root_metres: 0.83,
+            standing_head_metres: 1.25,
+        }
+    }
+}
 
 /// What a tick was worth, before the weights of a phase.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct RewardTerms {
     /// Task reward, 0 to 1.
     pub task: f32,
-    /// For being like the clip at the moment that is to be imitated, 0 to 1.
-    pub imitation: f32,
+    /// Reward for tracking a clip, 0 to 1.
+    pub tracking: f32,
     /// Speed towards the target, metres per second.
     pub speed_mps: f32,
     /// Speed commanded, metres per second.
     pub commanded_mps: f32,
-    /// How fast the feet slide, see [`slide_mps`].
-    pub slide_mps: f32,
+    /// How fast the feet slip, see [`foot_slip_mps`].
+    pub foot_slip_mps: f32,
 }
 
 impl RewardTerms {
-    /// With a share of the task reward for a pelvis at a height above the ground, metres: `exp(-|error| / 0.15)`.
+    /// With a share of the task reward for a root at a height above the ground, metres: `exp(-|error| / 0.15)`.
     #[must_use]
     pub fn with_height(self, state: &CharacterState, (share, metres): (f32, f32)) -> Self {
-        let height = state.height_of(Body::Pelvis);
+        let height = state.root_height();
         let reward = (-(height - metres).abs() / 0.15).exp();
         Self { task: (1.0 - share) * self.task + share * reward, ..self }
     }
 }
 
-/// How fast the feet slide over what they stand on, metres per second, weighed by the share of the character's weight that
-/// presses there; at most 1. Sliding is easy for a policy and cheap by every other reward, but no creature walks like that.
+/// How fast the feet slip over what they stand on, metres per second, weighted by the share of the character's weight that
+/// presses there; at most 1.
 #[must_use]
-pub fn slide_mps(state: &CharacterState, contacts: &[Contact], weight_newton: f32) -> f32 {
-    let feet = contacts.iter().filter(|c| matches!(c.body, Body::LeftFoot | Body::RightFoot));
+pub fn foot_slip_mps(
+    feet: &[BodyId],
+    state: &CharacterState,
+    contacts: &[Contact],
+    weight_newton: f32,
+) -> f32 {
+    let feet = contacts.iter().filter(|contact| feet.contains(&contact.body));
     let sum: f32 = feet
         .map(|contact| {
             let foot = state.body(contact.body);
@@ -49,65 +121,75 @@ pub fn slide_mps(state: &CharacterState, contacts: &[Contact], weight_newton: f3
 /// Within this distance of the target the commanded speed falls to zero, metres.
 const BRAKING_METRES: f32 = 1.0;
 
-/// How a target is to be gone to.
+/// Speed that a target should be approached with, at a position on the graph.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Manner {
+pub struct Pace {
     /// Speed, metres per second.
     pub speed_mps: f32,
-    /// Least error of the speed that counts as a large one, metres per second.
-    pub least_width_mps: f32,
-    /// Share of the reward for facing the target that only who nearly faces it gets, 0 to 1.
-    pub strict_facing: f32,
+    /// See [`RewardConfig::speed_scale_mps`].
+    pub speed_scale_mps: f32,
 }
 
 /// Angle to the target at which the strict reward for facing it has fallen to 1/e, radians.
 const STRICT_FACING_RADIANS: f32 = 0.4;
 
-/// Reward for going to `target` in a manner and facing it. `velocity` is that of the pelvis over the tick.
+/// Reward for going to `target` and facing it. `velocity` is that of the root over the tick, metres per second.
 ///
-/// `0.4 exp(-2 d) + 0.3 exp(-2 d / 9) + 0.3 facing` with `d = (e^2 + 0.25 s^2) / w^2`, speed error `e`, sideways speed `s`
-/// and a width `w`, metres per second, that grows with the commanded speed from the least width on, evenly below a walk and with
-/// the root above. The narrow bell makes the speed exact; the wide one gives a walk
-/// that is asked to run, or to stand, a slope to go down. Facing falls evenly from 1 to 0 straight behind, so that who goes
-/// the wrong way altogether gains by every degree too; the strict share of it is a bell, or who goes a little sideways
-/// hardly pays for it.
+/// `0.4 exp(-2 d) + 0.3 exp(-2 d / 9) + 0.3 facing` with `d = (e^2 + w s^2) / scale^2`, speed error `e`, sideways speed `s` and
+/// the sideways weight `w`. The scale grows with the commanded speed from its least value on: evenly below a walk, with the
+/// root above. The narrow bell makes the speed exact. The wide one gives a walk that is told to run, or to stand, a slope. A
+/// share of both bells can be replaced by a reward that falls evenly with the velocity error.
+/// Facing falls evenly from 1 to 0 straight behind; the strict share of it is a bell.
 #[must_use]
-pub fn target_reward(state: &CharacterState, velocity: Vec2, target: Vec2, manner: Manner) -> RewardTerms {
-    let pelvis = state.body(Body::Pelvis);
-    let to_target = target - pelvis.position.truncate();
+pub fn target_reward(
+    config: &RewardConfig,
+    state: &CharacterState,
+    velocity: Vec2,
+    target: Vec2,
+    pace: Pace,
+) -> RewardTerms {
+    let root = state.root();
+    let to_target = target - root.position.truncate();
     let distance = to_target.length();
-    let facing_now = Heading::from_rotation(pelvis.rotation).direction();
+    let facing_now = Heading::from_rotation(root.rotation).direction();
     let near = (distance / BRAKING_METRES).min(1.0);
     let direction = if distance > 1e-3 { to_target / distance } else { facing_now };
-    let commanded_mps = manner.speed_mps * near;
+    let commanded_mps = pace.speed_mps * near;
     let along = velocity.dot(direction);
     let sideways = velocity.perp_dot(direction);
-    let pace = commanded_mps / 1.25;
-    let width = (0.6 * pace.min(pace.sqrt())).max(manner.least_width_mps);
-    let error = ((along - commanded_mps).powi(2) + 0.25 * sideways * sideways) / (width * width);
-    // Close by, which way the target lies says nothing.
+    let relative = commanded_mps / 1.25;
+    let scale = (0.6 * relative.min(relative.sqrt())).max(pace.speed_scale_mps);
+    let squares = (along - commanded_mps).powi(2) + config.sideways_weight * sideways * sideways;
+    let error = squares / (scale * scale);
+    // Close by, the direction of the target says nothing.
     let aside = facing_now.angle_to(direction);
     let evenly = aside.abs() / std::f32::consts::PI;
     let steeply = 1.0 - (-(aside / STRICT_FACING_RADIANS).powi(2)).exp();
-    let facing = 1.0 - near * (evenly + manner.strict_facing * (steeply - evenly));
-    let speed = 0.4 * (-2.0 * error).exp() + 0.3 * (-2.0 * error / 9.0).exp();
+    let facing = 1.0 - near * (evenly + config.strict_facing_share * (steeply - evenly));
+    let bells = 0.4 * (-2.0 * error).exp() + 0.3 * (-2.0 * error / 9.0).exp();
+    let off = (velocity - commanded_mps * direction).length() / (2.0 * pace.speed_mps.max(1.0));
+    let linear = 0.7 * (1.0 - off).max(0.0);
+    let speed = bells + config.linear_speed_share * (linear - bells);
     RewardTerms { task: speed + 0.3 * facing, speed_mps: along, commanded_mps, ..RewardTerms::default() }
 }
 
-/// Speed of the pelvis up to which a rise is at ease, metres per second.
+/// Speed of the root up to which standing up is at ease, metres per second.
 const RISING_MPS: f32 = 1.2;
 
-/// Reward for standing: pelvis and head at their heights, trunk upright, still once it is up, without a leap.
+/// Reward for standing: root and head at their heights, the trunk upright, still once it is up, without a leap. The trunk is the body that the head hangs on, or the root.
 #[must_use]
-pub fn standing_reward(state: &CharacterState) -> RewardTerms {
-    let pelvis = (state.height_of(Body::Pelvis) / 0.83).clamp(0.0, 1.0);
-    let head = (state.height_of(Body::Head) / 1.25).clamp(0.0, 1.0);
-    let up = (state.body(Body::Torso).rotation * Vec3::Z).z.max(0.0);
-    let speed = state.body(Body::Pelvis).linear_velocity.truncate().length();
-    let height = 0.5 * (pelvis + head);
+pub fn standing_reward(config: &RewardConfig, skeleton: &Skeleton, state: &CharacterState) -> RewardTerms {
+    let root = (state.root_height() / config.standing_root_metres).clamp(0.0, 1.0);
+    let head = skeleton
+        .head()
+        .map_or(root, |head| (state.height_of(head) / config.standing_head_metres).clamp(0.0, 1.0));
+    let trunk = skeleton.head().and_then(|head| skeleton.parent(head)).unwrap_or(skeleton.root());
+    let up = (state.body(trunk).rotation * Vec3::Z).z.max(0.0);
+    let speed = state.root().linear_velocity.truncate().length();
+    let height = 0.5 * (root + head);
     let still = if height > 0.9 { (-speed * speed).exp() } else { 0.0 };
-    // Nobody jumps to his feet: what is faster than a rise at ease pays little.
-    let excess = (state.body(Body::Pelvis).linear_velocity.length() - RISING_MPS).max(0.0);
+    // Standing up faster than at ease pays little.
+    let excess = (state.root().linear_velocity.length() - RISING_MPS).max(0.0);
     let calm = (-3.0 * excess).exp();
     // Linear in the height, so that the first centimetres off the ground pay as well as the last.
     let task = calm * (0.5 * height + 0.3 * height * up + 0.2 * still);
@@ -115,110 +197,5 @@ pub fn standing_reward(state: &CharacterState) -> RewardTerms {
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-
-    fn manner(speed_mps: f32, least_width_mps: f32) -> Manner {
-        Manner { speed_mps, least_width_mps, strict_facing: 0.0 }
-    }
-
-    #[test]
-    fn the_right_speed_towards_the_target_is_worth_one() {
-        let state = CharacterState::default();
-        let terms = target_reward(&state, Vec2::new(1.25, 0.0), Vec2::new(5.0, 0.0), manner(1.25, 0.6));
-        assert!((terms.task - 1.0).abs() < 1e-6);
-        let away = target_reward(&state, Vec2::new(-1.25, 0.0), Vec2::new(5.0, 0.0), manner(1.25, 0.6));
-        assert!(away.task < 0.5);
-    }
-
-    #[test]
-    fn a_walk_asked_to_run_or_to_stand_feels_a_slope() {
-        let state = CharacterState::default();
-        let at = |speed: f32| {
-            target_reward(&state, Vec2::new(speed, 0.0), Vec2::new(5.0, 0.0), manner(3.5, 0.6)).task
-        };
-        assert!(at(1.5) - at(1.3) > 0.02, "{} {}", at(1.5), at(1.3));
-        let at = |speed: f32| {
-            target_reward(&state, Vec2::new(speed, 0.0), Vec2::new(5.0, 0.0), manner(0.0, 0.6)).task
-        };
-        assert!(at(1.2) - at(1.4) > 0.02, "{} {}", at(1.2), at(1.4));
-    }
-
-    #[test]
-    fn a_slow_gait_that_rests_misses_most_of_its_reward() {
-        let state = CharacterState::default();
-        let at =
-            |speed: f32| target_reward(&state, Vec2::new(speed, 0.0), Vec2::new(5.0, 0.0), manner(0.34, 0.2));
-        assert!(at(0.34).task - at(0.0).task > 0.4, "{}", at(0.0).task);
-    }
-
-    #[test]
-    fn every_degree_towards_the_target_pays() {
-        let state = CharacterState::default();
-        let at = |degrees: f32| {
-            let target = 5.0 * Vec2::from_angle(degrees.to_radians());
-            target_reward(&state, Vec2::ZERO, target, manner(0.3, 0.6)).task
-        };
-        for degrees in (0..180).step_by(10).map(|d| d as f32) {
-            assert!(at(degrees) - at(degrees + 10.0) > 0.01, "{degrees}");
-            assert!((at(degrees) - at(-degrees)).abs() < 1e-6);
-        }
-    }
-
-    #[test]
-    fn a_strict_facing_makes_a_little_sideways_cost_much() {
-        let state = CharacterState::default();
-        let at = |degrees: f32, strict_facing: f32| {
-            let target = 5.0 * Vec2::from_angle(degrees.to_radians());
-            let manner = Manner { strict_facing, ..manner(0.3, 0.6) };
-            target_reward(&state, 0.3 * target.normalize(), target, manner).task
-        };
-        assert!((at(0.0, 1.0) - 1.0).abs() < 1e-6 && (at(180.0, 0.5) - 0.7).abs() < 1e-4);
-        // 0.3 of 30 degrees in 180, and of a bell of 0.4 radians.
-        assert!((at(30.0, 0.0) - 0.95).abs() < 1e-4);
-        assert!((at(30.0, 1.0) - (0.7 + 0.3 * (-(30.0_f32.to_radians() / 0.4).powi(2)).exp())).abs() < 1e-4);
-        assert!((at(30.0, 0.5) - 0.5 * (at(30.0, 0.0) + at(30.0, 1.0))).abs() < 1e-6);
-    }
-
-    #[test]
-    fn every_centimetre_off_the_ground_pays() {
-        let at = |metres: f32| {
-            let mut state = CharacterState::default();
-            state.bodies[Body::Pelvis.index()].position.z = metres;
-            state.bodies[Body::Head.index()].position.z = 1.5 * metres;
-            standing_reward(&state).task
-        };
-        assert!(at(0.2) - at(0.1) > 0.05, "{} {}", at(0.2), at(0.1));
-        assert!((at(0.9) - 1.0).abs() < 1e-6);
-    }
-
-    #[test]
-    fn a_foot_that_slides_under_the_weight_costs_and_one_that_rolls_or_swings_does_not() {
-        let mut state = CharacterState::default();
-        let foot = &mut state.bodies[Body::LeftFoot.index()];
-        (foot.position, foot.linear_velocity) = (Vec3::new(0.0, 0.0, 0.05), Vec3::new(0.4, 0.3, 0.2));
-        let touch = |body, newton: f32| Contact {
-            body,
-            other: None,
-            position: Vec3::ZERO,
-            normal: Vec3::Z,
-            force: Vec3::new(50.0, 0.0, newton),
-            depth: 0.0,
-        };
-        let both = [touch(Body::LeftFoot, 240.0), touch(Body::LeftHand, 240.0)];
-        assert!((slide_mps(&state, &both, 480.0) - 0.25).abs() < 1e-6);
-        assert_eq!(slide_mps(&state, &[], 480.0), 0.0);
-        // The point that touches rests while the foot turns about it.
-        let foot = &mut state.bodies[Body::LeftFoot.index()];
-        (foot.linear_velocity, foot.angular_velocity) = (Vec3::new(0.4, 0.0, 0.0), Vec3::new(0.0, 8.0, 0.0));
-        assert!(slide_mps(&state, &both, 480.0) < 1e-6);
-    }
-
-    #[test]
-    fn at_the_target_standing_is_best_whatever_the_heading() {
-        let state = CharacterState::default();
-        let still = target_reward(&state, Vec2::ZERO, Vec2::ZERO, manner(1.25, 0.6));
-        assert!((still.task - 1.0).abs() < 1e-6);
-        assert!(target_reward(&state, Vec2::X, Vec2::ZERO, manner(1.25, 0.6)).task < 0.7);
-    }
-}
+#[path = "reward_tests.rs"]
+mod tests;

@@ -5,12 +5,13 @@ use std::ops::Range;
 use std::sync::Arc;
 
 use physics_bridge::Model;
-use policy_core::{Blend, CharacterPack, CharacterState, Command, MAX_LAYERS};
+use policy_core::training::MAX_LAYERS;
+use policy_core::{Blend, CharacterPack, CharacterState, Command, NodeId};
 use rayon::prelude::*;
 use serde::Serialize;
 
+use super::eval_character::{EvalCharacter, SETTLE_SECS};
 use super::motion::pose_error;
-use super::subject::{SETTLE_SECS, Subject};
 use crate::Rng;
 use crate::env::DT_SECS;
 
@@ -45,7 +46,7 @@ fn choices() -> impl Iterator<Item = (usize, String)> {
 pub fn measure_layers(
     model: &Model,
     pack: &Arc<CharacterPack>,
-    (from, to): (usize, usize),
+    (from, to): (NodeId, NodeId),
     characters: usize,
 ) -> BTreeMap<String, LayerReport> {
     // The first policy alone, twice: what the motion is compared to, and how much that differs by itself.
@@ -55,7 +56,7 @@ pub fn measure_layers(
     let measured = choices().map(|(bits, name)| {
         let mut t = [0.0; MAX_LAYERS];
         (0..LAYERS).filter(|layer| bits >> layer & 1 == 1).for_each(|layer| t[layer] = 0.5);
-        let blend = Blend::between_per_layer(from, to, t);
+        let blend = Blend::between_per_layer(from.into(), to.into(), t);
         let blended = walk_all(model, pack, from, Some(blend), 0..characters);
         let up = blended.iter().flatten().count();
         let without_fall = up as f32 / characters.max(1) as f32;
@@ -70,12 +71,12 @@ pub fn measure_layers(
 pub fn watch_layers(
     model: &Model,
     pack: &Arc<CharacterPack>,
-    (from, to): (usize, usize),
+    (from, to): (NodeId, NodeId),
     t: [f32; 3],
 ) -> Option<Vec<CharacterState>> {
     let mut weights = [0.0; MAX_LAYERS];
     weights[..LAYERS].copy_from_slice(&t);
-    walk(model, pack, from, Some(Blend::between_per_layer(from, to, weights)), 0)
+    walk(model, pack, from, Some(Blend::between_per_layer(from.into(), to.into(), weights)), 0)
 }
 
 /// States of a walk; `None` when it ended in a fall.
@@ -84,7 +85,7 @@ type Walk = Option<Vec<CharacterState>>;
 fn walk_all(
     model: &Model,
     pack: &Arc<CharacterPack>,
-    node: usize,
+    node: NodeId,
     blend: Option<Blend>,
     seeds: Range<usize>,
 ) -> Vec<Walk> {
@@ -102,17 +103,17 @@ fn difference(walks: &[Walk], others: &[Walk]) -> f32 {
 }
 
 /// States of a character that goes straight ahead; `None` when it falls after it has settled.
-fn walk(model: &Model, pack: &Arc<CharacterPack>, node: usize, blend: Option<Blend>, seed: u64) -> Walk {
-    let mut subject = Subject::at(model, pack, node);
+fn walk(model: &Model, pack: &Arc<CharacterPack>, node: NodeId, blend: Option<Blend>, seed: u64) -> Walk {
+    let mut eval = EvalCharacter::at(model, pack, node);
     let settle = ((SETTLE_SECS + Rng::new(seed, 19).range(0.0, 1.0)) / DT_SECS) as u32;
     let mut states = Vec::new();
     for tick in 0..settle + (TEST_SECS / DT_SECS) as u32 {
-        let command = Command { blend: blend.filter(|_| tick >= settle), ..subject.ahead(node) };
-        if !subject.tick(&command) || subject.controller.report().fallen {
+        let command = Command { blend: blend.filter(|_| tick >= settle), ..eval.ahead(node) };
+        if !eval.tick(&command) || eval.controller.report().fallen {
             return None;
         }
         if tick >= settle {
-            states.push(subject.state);
+            states.push(eval.state.clone());
         }
     }
     Some(states)

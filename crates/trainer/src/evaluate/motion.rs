@@ -4,10 +4,10 @@ use std::sync::Arc;
 
 use glam::Vec3;
 use physics_bridge::Model;
-use policy_core::{Body, CharacterPack, CharacterState, Heading};
+use policy_core::{CharacterPack, CharacterState, Heading, NodeId, Skeleton};
 use serde::Serialize;
 
-use super::subject::{SETTLE_SECS, Subject};
+use super::eval_character::{EvalCharacter, SETTLE_SECS};
 use crate::clip::{Clip, TICK_STRIDE};
 use crate::env::{DT_SECS, SourceError, fit};
 
@@ -35,13 +35,13 @@ pub struct MotionReport {
 impl MotionReport {
     /// Numbers of a motion sampled at the control rate.
     #[must_use]
-    pub fn of(states: &[CharacterState]) -> Self {
+    pub fn of(skeleton: &Skeleton, states: &[CharacterState]) -> Self {
         let mut report = Self::default();
         let secs = (states.len().saturating_sub(1)).max(1) as f32 * DT_SECS;
         let (mut slide, mut stood) = (0.0, 0.0);
-        for (foot, share) in
-            [(Body::LeftFoot, &mut report.left_stance), (Body::RightFoot, &mut report.right_stance)]
-        {
+        let shares = [("left_foot", &mut report.left_stance), ("right_foot", &mut report.right_stance)];
+        for (foot, share) in shares {
+            let Some(foot) = skeleton.body_named(foot) else { continue };
             let height = |s: &CharacterState| s.height_of(foot);
             let mut count = 0.0;
             for pair in states.windows(2) {
@@ -57,7 +57,7 @@ impl MotionReport {
             *share = count * DT_SECS / secs;
         }
         report.foot_slide_mps = slide / f32::max(stood, 1.0);
-        let place = |s: &CharacterState| s.body(Body::Pelvis).position.truncate();
+        let place = |s: &CharacterState| s.root().position.truncate();
         let way: f32 = states.windows(2).map(|p| (place(&p[1]) - place(&p[0])).length()).sum();
         report.speed_mps = way / secs;
         report
@@ -66,16 +66,16 @@ impl MotionReport {
 
 /// States of a policy that goes straight ahead, after it has settled; empty when it falls.
 #[must_use]
-pub fn watch(model: &Model, pack: &Arc<CharacterPack>, node: usize) -> Vec<CharacterState> {
-    let mut subject = Subject::at(model, pack, node);
+pub fn watch(model: &Model, pack: &Arc<CharacterPack>, node: NodeId) -> Vec<CharacterState> {
+    let mut eval = EvalCharacter::at(model, pack, node);
     let mut states = Vec::new();
     for tick in 0..((SETTLE_SECS + WATCHED_SECS) / DT_SECS) as u32 {
-        let command = subject.ahead(node);
-        if !subject.tick(&command) || subject.controller.report().fallen {
+        let command = eval.ahead(node);
+        if !eval.tick(&command) || eval.controller.report().fallen {
             return Vec::new();
         }
         if tick as f32 * DT_SECS >= SETTLE_SECS {
-            states.push(subject.state);
+            states.push(eval.state.clone());
         }
     }
     states
@@ -90,7 +90,7 @@ pub fn clip_states(model: &Model, clip: &Clip) -> Result<Vec<CharacterState>, So
     let count = if clip.looping { 2 * fitted.states.len() } else { fitted.states.len() };
     let [x, y] = fitted.motion.cycle_offset.map(|o| o as f32);
     let state = |i: usize| {
-        let mut state = fitted.states[i % fitted.states.len()];
+        let mut state = fitted.states[i % fitted.states.len()].clone();
         let cycle = (i / fitted.states.len()) as f32;
         state.bodies.iter_mut().for_each(|b| b.position += cycle * Vec3::new(x, y, 0.0));
         state
@@ -124,7 +124,7 @@ pub fn pose_error(motion: &[CharacterState], clip: &[CharacterState]) -> f32 {
 }
 
 fn shape(state: &CharacterState) -> Vec<Vec3> {
-    let pelvis = state.body(Body::Pelvis);
+    let pelvis = state.root();
     let heading = Heading::from_rotation(pelvis.rotation);
     state.bodies[1..].iter().map(|b| heading.heading_from_world(b.position - pelvis.position)).collect()
 }
@@ -133,9 +133,13 @@ fn shape(state: &CharacterState) -> Vec<Vec3> {
 mod tests {
     use super::*;
 
+    fn still() -> CharacterState {
+        CharacterState::new(&Skeleton::humanoid())
+    }
+
     fn swing(ticks: usize, rate: f32) -> Vec<CharacterState> {
         let state = |i: usize| {
-            let mut state = CharacterState::default();
+            let mut state = still();
             state.bodies[11].position.x = (i as f32 * rate).sin();
             state
         };
@@ -147,18 +151,20 @@ mod tests {
         let cycle = swing(63, 0.1);
         assert!(pose_error(&cycle, &cycle) < 1e-6);
         assert!(pose_error(&swing(40, 0.15), &cycle) < 0.01);
-        assert!(pose_error(&[CharacterState::default(); 20], &cycle) < 0.01);
+        assert!(pose_error(&vec![still(); 20], &cycle) < 0.01);
         assert!(pose_error(&[], &cycle).is_nan());
     }
 
     #[test]
     fn a_foot_that_is_dragged_slides() {
-        let mut states = vec![CharacterState::default(); 31];
+        let mut states = vec![still(); 31];
+        let skeleton = Skeleton::humanoid();
+        let [left, right] = ["left_foot", "right_foot"].map(|name| skeleton.body_named(name).unwrap());
         for (i, state) in states.iter_mut().enumerate() {
-            state.bodies[Body::LeftFoot.index()].position = Vec3::new(0.5 * i as f32 * DT_SECS, 0.0, 0.05);
-            state.bodies[Body::RightFoot.index()].position = Vec3::new(0.0, 0.0, 0.3);
+            state.body_mut(left).position = Vec3::new(0.5 * i as f32 * DT_SECS, 0.0, 0.05);
+            state.body_mut(right).position = Vec3::new(0.0, 0.0, 0.3);
         }
-        let report = MotionReport::of(&states);
+        let report = MotionReport::of(&skeleton, &states);
         assert!((report.foot_slide_mps - 0.5).abs() < 1e-3);
         assert!(report.left_stance > 0.99 && report.right_stance == 0.0);
     }

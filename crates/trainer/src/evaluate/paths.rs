@@ -3,11 +3,12 @@
 use std::sync::Arc;
 
 use physics_bridge::Model;
-use policy_core::{BlendMode, CharacterPack, Goal, Heading, TARGET_RANGE_METRES};
+use policy_core::training::TARGET_RANGE_METRES;
+use policy_core::{BlendMode, CharacterPack, Goal, Heading, PathId};
 use rayon::prelude::*;
 
+use super::eval_character::{EvalCharacter, SETTLE_SECS, Wanderer};
 use super::report::ModeReport;
-use super::subject::{SETTLE_SECS, Subject, Wanderer};
 use crate::Rng;
 use crate::env::DT_SECS;
 
@@ -30,38 +31,39 @@ pub struct Walked {
 fn walk(
     model: &Model,
     pack: &Arc<CharacterPack>,
-    path: usize,
+    path: PathId,
     mode: BlendMode,
     coordinate: Option<f32>,
     (secs, seed): (f32, u64),
 ) -> Walked {
     let graph = pack.graph();
-    let nodes = &graph.paths()[path];
+    let nodes = graph.path(path);
     // The second node of a path is where a full stick and free triggers are: Walk.
-    let start = &graph.nodes()[nodes.nodes[1]].name;
-    let mut subject = Subject::new(model, pack, start);
-    let mut player = Wanderer::new(Rng::new(seed, 7), path, nodes.end(), mode, coordinate);
+    let start = &graph.node(nodes.nodes()[1]).name;
+    let mut eval = EvalCharacter::new(model, pack, start);
+    eval.controller.set_blend_mode(mode);
+    let mut player = Wanderer::new(Rng::new(seed, 7), path, nodes.end(), coordinate);
     let mut walked = Walked::default();
     let (mut along, mut ticks) = (0.0, 0);
     let mut settled = 0.0;
     for _ in 0..((secs + SETTLE_SECS) / DT_SECS) as u32 {
-        let before = subject.position();
+        let before = eval.position();
         let mut command = player.command(before);
         if settled < SETTLE_SECS {
             // Whoever is stood up walks off first, wherever the trigger is.
             command.target = Some(before + TARGET_RANGE_METRES * player.direction());
             command.goal = Goal::Path { path, coordinate: 1.0 };
         }
-        let sound = subject.tick(&command);
-        walked.rises += u32::from(subject.controller.report().skill_started.is_some());
+        let sound = eval.tick(&command);
+        walked.rises += u32::from(eval.controller.report().skill_started.is_some());
         settled += DT_SECS;
         if settled > SETTLE_SECS + TRAVEL_SECS {
-            along += (subject.position() - before).dot(player.direction());
+            along += (eval.position() - before).dot(player.direction());
             ticks += 1;
         }
-        if !sound || subject.controller.report().fallen {
+        if !sound || eval.controller.report().fallen {
             walked.falls += 1;
-            subject.reset(Heading::from_angle(player.direction().to_angle()));
+            eval.reset(Heading::from_angle(player.direction().to_angle()));
             settled = 0.0;
         }
     }
@@ -75,7 +77,7 @@ fn walk(
 pub fn measure_sweep(
     model: &Model,
     pack: &Arc<CharacterPack>,
-    path: usize,
+    path: PathId,
     mode: BlendMode,
     (characters, secs): (usize, f32),
 ) -> ModeReport {
@@ -92,7 +94,7 @@ pub fn measure_sweep(
 pub fn measure_coordinates(
     model: &Model,
     pack: &Arc<CharacterPack>,
-    path: usize,
+    path: PathId,
     mode: BlendMode,
     coordinate: f32,
     (characters, secs): (usize, f32),

@@ -4,10 +4,10 @@ use std::sync::Arc;
 
 use glam::Vec3;
 use physics_bridge::Model;
-use policy_core::{Body, CharacterPack};
+use policy_core::{CharacterPack, NodeId};
 use rayon::prelude::*;
 
-use super::subject::{SETTLE_SECS, Subject};
+use super::eval_character::{EvalCharacter, SETTLE_SECS};
 use crate::Rng;
 use crate::env::{DT_SECS, PUSH_SECS};
 
@@ -20,7 +20,7 @@ const MOST_NEWTON: f32 = 2000.0;
 pub fn measure_push(
     model: &Model,
     pack: &Arc<CharacterPack>,
-    node: usize,
+    node: NodeId,
     direction: Vec3,
     characters: usize,
 ) -> f32 {
@@ -42,16 +42,18 @@ pub fn measure_push(
     low
 }
 
-fn stays_up(model: &Model, pack: &Arc<CharacterPack>, node: usize, force: Vec3, seed: u64) -> bool {
-    let mut subject = Subject::at(model, pack, node);
+fn stays_up(model: &Model, pack: &Arc<CharacterPack>, node: NodeId, force: Vec3, seed: u64) -> bool {
+    let mut eval = EvalCharacter::at(model, pack, node);
     let mut rng = Rng::new(seed, 9);
     let before = ((SETTLE_SECS + rng.range(0.0, 1.0)) / DT_SECS) as u32;
     for tick in 0..before + (3.0 / DT_SECS) as u32 {
         if tick == before {
-            subject.character.push(Body::Pelvis, force, PUSH_SECS).expect("forces tried are within bounds");
+            eval.character
+                .push(pack.skeleton().root(), force, PUSH_SECS)
+                .expect("forces tried are within bounds");
         }
-        let command = subject.ahead(node);
-        if !subject.tick(&command) || subject.controller.report().fallen {
+        let command = eval.ahead(node);
+        if !eval.tick(&command) || eval.controller.report().fallen {
             return false;
         }
     }

@@ -3,15 +3,13 @@
 use std::sync::Arc;
 
 use glam::Vec2;
-use physics_bridge::{Model, Pose, QPOS_LEN, QVEL_LEN};
-use policy_core::{
-    Body, CharacterPack, CharacterState, Command, DOF_COUNT, Goal, JointTargets, SkillEnd,
-    TARGET_RANGE_METRES,
-};
+use physics_bridge::{Model, Pose};
+use policy_core::training::TARGET_RANGE_METRES;
+use policy_core::{CharacterPack, CharacterState, Command, Goal, JointTargets, SkillEnd, SkillId};
 use rayon::prelude::*;
 use serde::Serialize;
 
-use super::subject::{SETTLE_SECS, Subject};
+use super::eval_character::{EvalCharacter, SETTLE_SECS};
 use crate::Rng;
 use crate::env::DT_SECS;
 
@@ -20,6 +18,9 @@ const GET_UP_SECS: f32 = 5.0;
 
 /// Seconds within which an episodic skill must be over.
 const SKILL_SECS: f32 = 3.0;
+
+/// Body whose x axis tells which way a lying character faces; the root where there is none.
+const FACING: &str = "torso";
 
 /// A share of tries that went well.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
@@ -62,23 +63,23 @@ pub fn measure_get_up(
     Some(RateReport::of(&tries))
 }
 
-fn gets_up(model: &Model, pack: &Arc<CharacterPack>, skill: usize, seed: u64) -> (bool, Option<f32>) {
-    let mut subject = Subject::new(model, pack, "idle");
+fn gets_up(model: &Model, pack: &Arc<CharacterPack>, skill: SkillId, seed: u64) -> (bool, Option<f32>) {
+    let mut eval = EvalCharacter::new(model, pack, "idle");
     let mut rng = Rng::new(seed, 11);
-    if !drop_limp(&mut subject, &mut rng) {
+    if !drop_limp(&mut eval, &mut rng) {
         return (false, None);
     }
     let mut command = Command { skill: Some(skill), ..Command::default() };
     let (mut stood, mut ended) = (0.0, None);
     for tick in 0..((GET_UP_SECS + 1.0) / DT_SECS) as u32 {
-        if !subject.tick(&command) {
+        if !eval.tick(&command) {
             return (false, ended);
         }
         command.skill = None;
-        if let Some((_, SkillEnd::Recognised)) = subject.controller.report().skill_ended {
+        if let Some((_, SkillEnd::Recognised)) = eval.controller.report().skill_ended {
             ended = Some(tick as f32 * DT_SECS);
         }
-        let up = subject.pelvis_height() > 0.65 && subject.state.height_of(Body::Head) > 1.1;
+        let up = eval.is_upright();
         stood = if up { stood + DT_SECS } else { 0.0 };
     }
     // Up at the end, and so since five seconds after the drop.
@@ -86,31 +87,30 @@ fn gets_up(model: &Model, pack: &Arc<CharacterPack>, skill: usize, seed: u64) ->
 }
 
 /// Drops the character in a random attitude, limp, and lets it come to rest for two seconds.
-fn drop_limp(subject: &mut Subject, rng: &mut Rng) -> bool {
+fn drop_limp(eval: &mut EvalCharacter, rng: &mut Rng) -> bool {
     let turn = glam::Quat::from_euler(glam::EulerRot::ZYX, rng.angle(), rng.range(-1.6, 1.6), rng.angle());
-    let mut pose = Pose { qpos: [0.0; QPOS_LEN], qvel: [0.0; QVEL_LEN] };
+    let skeleton = eval.character.model().skeleton().clone();
+    let mut pose = Pose::new(&skeleton);
     pose.qpos[2] = 0.8;
     pose.qpos[3..7].copy_from_slice(&[turn.w, turn.x, turn.y, turn.z].map(f64::from));
-    let (low, high) = subject.character.model().joint_limits();
-    for joint in 0..DOF_COUNT {
-        let angle = 0.5 * rng.range(low[joint], high[joint]);
-        pose.qpos[7 + joint] = f64::from(angle);
+    for (angle, joint) in pose.qpos[7..].iter_mut().zip(skeleton.joints()) {
+        *angle = f64::from(0.5 * rng.range(joint.range[0], joint.range[1]));
     }
-    if subject.character.set_pose(&pose.qpos, &pose.qvel).is_err() {
+    if eval.character.set_pose(&pose.qpos, &pose.qvel).is_err() {
         return false;
     }
+    let mut targets = JointTargets::new(&skeleton);
     for _ in 0..(2.0 / DT_SECS) as u32 {
-        let mut targets = JointTargets::default();
-        let now = subject.character.pose();
-        for (target, angle) in targets.0.iter_mut().zip(&now.qpos[7..]) {
+        eval.character.pose_into(&mut pose);
+        for (target, angle) in targets.iter_mut().zip(&pose.qpos[7..]) {
             *target = *angle as f32;
         }
-        subject.character.actuate(&targets);
-        if subject.character.step().is_err() {
+        eval.character.actuate(&targets);
+        if eval.character.step().is_err() {
             return false;
         }
     }
-    subject.character.sense_into(&mut subject.state);
+    eval.character.sense_into(&mut eval.state);
     true
 }
 
@@ -120,38 +120,38 @@ fn drop_limp(subject: &mut Subject, rng: &mut Rng) -> bool {
 pub fn watch_skill(
     model: &Model,
     pack: &Arc<CharacterPack>,
-    skill: usize,
+    skill: SkillId,
     on_its_face: bool,
 ) -> Vec<CharacterState> {
-    let back = pack.skills()[skill].returns_to;
-    let mut subject = Subject::new(model, pack, &pack.graph().nodes()[back].name);
-    let ahead = |subject: &Subject| Some(subject.position() + Vec2::new(TARGET_RANGE_METRES, 0.0));
+    let back = pack.skills()[skill.index()].returns_to;
+    let mut eval = EvalCharacter::new(model, pack, &pack.graph().node(back).name);
+    let ahead = |eval: &EvalCharacter| Some(eval.position() + Vec2::new(TARGET_RANGE_METRES, 0.0));
     let mut command = Command { goal: Goal::Node(back), ..Command::default() };
     if pack.recovery() == Some(skill) {
-        let faces_down = |s: &Subject| (s.state.body(Body::Torso).rotation * glam::Vec3::X).z < -0.5;
-        let faces_up = |s: &Subject| (s.state.body(Body::Torso).rotation * glam::Vec3::X).z > 0.5;
-        let lies = |s: &Subject| if on_its_face { faces_down(s) } else { faces_up(s) };
-        let lying = (0..100).any(|seed| drop_limp(&mut subject, &mut Rng::new(seed, 11)) && lies(&subject));
+        let body = pack.skeleton().body_named(FACING).unwrap_or_else(|| pack.skeleton().root());
+        let sign = if on_its_face { -1.0 } else { 1.0 };
+        let lies = |s: &EvalCharacter| sign * (s.state.body(body).rotation * glam::Vec3::X).z > 0.5;
+        let lying = (0..100).any(|seed| drop_limp(&mut eval, &mut Rng::new(seed, 11)) && lies(&eval));
         if !lying {
             return Vec::new();
         }
     } else {
         for _ in 0..(SETTLE_SECS / DT_SECS) as u32 {
-            command.target = ahead(&subject);
-            subject.tick(&command);
+            command.target = ahead(&eval);
+            eval.tick(&command);
         }
     }
     command.skill = Some(skill);
-    let mut states = vec![subject.state];
+    let mut states = vec![eval.state.clone()];
     let mut after = 0.0;
     while after < 0.5 && states.len() < 300 {
-        command.target = if pack.recovery() == Some(skill) { None } else { ahead(&subject) };
-        if !subject.tick(&command) {
+        command.target = if pack.recovery() == Some(skill) { None } else { ahead(&eval) };
+        if !eval.tick(&command) {
             break;
         }
         command.skill = None;
-        states.push(subject.state);
-        after = if subject.controller.report().skill.is_some() { 0.0 } else { after + DT_SECS };
+        states.push(eval.state.clone());
+        after = if eval.controller.report().skill.is_some() { 0.0 } else { after + DT_SECS };
     }
     states
 }
@@ -162,28 +162,28 @@ pub fn watch_skill(
 /// # Panics
 /// When the pack has no such skill.
 #[must_use]
-pub fn measure_skill(model: &Model, pack: &Arc<CharacterPack>, skill: usize, tries: usize) -> RateReport {
+pub fn measure_skill(model: &Model, pack: &Arc<CharacterPack>, skill: SkillId, tries: usize) -> RateReport {
     let tries: Vec<_> =
         (0..tries).into_par_iter().map(|i| comes_back(model, pack, skill, i as u64)).collect();
     RateReport::of(&tries)
 }
 
-fn comes_back(model: &Model, pack: &Arc<CharacterPack>, skill: usize, seed: u64) -> (bool, Option<f32>) {
-    let back = pack.skills()[skill].returns_to;
-    let mut subject = Subject::new(model, pack, &pack.graph().nodes()[back].name);
+fn comes_back(model: &Model, pack: &Arc<CharacterPack>, skill: SkillId, seed: u64) -> (bool, Option<f32>) {
+    let back = pack.skills()[skill.index()].returns_to;
+    let mut eval = EvalCharacter::new(model, pack, &pack.graph().node(back).name);
     let mut rng = Rng::new(seed, 13);
     let start = ((SETTLE_SECS + rng.range(0.0, 1.0)) / DT_SECS) as u32;
     let mut ended = None;
     for tick in 0..start + ((SKILL_SECS + 1.0) / DT_SECS) as u32 {
-        let target = Some(subject.position() + Vec2::new(TARGET_RANGE_METRES, 0.0));
+        let target = Some(eval.position() + Vec2::new(TARGET_RANGE_METRES, 0.0));
         let skill = (tick == start).then_some(skill);
         let command = Command { target, goal: Goal::Node(back), skill, ..Command::default() };
-        if !subject.tick(&command) || (tick < start && subject.controller.report().fallen) {
+        if !eval.tick(&command) || (tick < start && eval.controller.report().fallen) {
             return (false, ended);
         }
-        if let Some((_, SkillEnd::Recognised)) = subject.controller.report().skill_ended {
+        if let Some((_, SkillEnd::Recognised)) = eval.controller.report().skill_ended {
             ended = Some((tick - start) as f32 * DT_SECS);
         }
     }
-    (ended.is_some_and(|secs| secs <= SKILL_SECS) && subject.pelvis_height() > 0.65, ended)
+    (ended.is_some_and(|secs| secs <= SKILL_SECS) && eval.pelvis_height() > 0.65, ended)
 }

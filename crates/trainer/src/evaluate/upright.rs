@@ -4,11 +4,12 @@ use std::sync::Arc;
 
 use glam::Vec2;
 use physics_bridge::Model;
-use policy_core::{CharacterPack, Command, Goal, TARGET_RANGE_METRES};
+use policy_core::training::TARGET_RANGE_METRES;
+use policy_core::{CharacterPack, Command, Goal, NodeId};
 use rayon::prelude::*;
 use serde::Serialize;
 
-use super::subject::{SETTLE_SECS, Subject};
+use super::eval_character::{EvalCharacter, SETTLE_SECS};
 use crate::Rng;
 use crate::env::DT_SECS;
 
@@ -30,7 +31,7 @@ pub struct UprightReport {
 pub fn measure_upright(
     model: &Model,
     pack: &Arc<CharacterPack>,
-    node: usize,
+    node: NodeId,
     characters: usize,
 ) -> UprightReport {
     let speeds: Vec<Option<f32>> =
@@ -42,10 +43,10 @@ pub fn measure_upright(
     }
 }
 
-fn walk(model: &Model, pack: &Arc<CharacterPack>, node: usize, seed: u64) -> Option<f32> {
+fn walk(model: &Model, pack: &Arc<CharacterPack>, node: NodeId, seed: u64) -> Option<f32> {
     let graph = pack.graph();
-    let mut subject = Subject::at(model, pack, node);
-    let stands = graph.nodes()[node].speed_mps == Some(0.0);
+    let mut eval = EvalCharacter::at(model, pack, node);
+    let stands = graph.node(node).speed_mps == Some(0.0);
     let mut rng = Rng::new(seed, 17);
     let (mut angle, mut along) = (0.0, 0.0);
     let ticks = (TEST_SECS / DT_SECS) as u32;
@@ -54,14 +55,14 @@ fn walk(model: &Model, pack: &Arc<CharacterPack>, node: usize, seed: u64) -> Opt
         if tick % settled == 0 && tick > 0 {
             angle += rng.range(-1.0, 1.0) * std::f32::consts::FRAC_PI_2;
         }
-        let before = subject.position();
+        let before = eval.position();
         let target = (!stands).then_some(before + TARGET_RANGE_METRES * Vec2::from_angle(angle));
         let command = Command { target, goal: Goal::Node(node), ..Command::default() };
-        if !subject.tick(&command) || subject.controller.report().fallen {
+        if !eval.tick(&command) || eval.controller.report().fallen {
             return None;
         }
         if tick >= settled {
-            along += (subject.position() - before).dot(Vec2::from_angle(angle));
+            along += (eval.position() - before).dot(Vec2::from_angle(angle));
         }
     }
     Some(along / ((ticks - settled) as f32 * DT_SECS))

@@ -27,7 +27,7 @@ pub struct DiscriminatorLoss {
     pub cross_entropy: f64,
     /// Squared gradient by the input at the demonstrations.
     pub squared_gradient: f64,
-    /// Rows judged rightly.
+    /// Rows told apart rightly.
     pub right: f64,
 }
 

@@ -52,8 +52,13 @@ impl Network {
     #[must_use]
     pub fn zeros(sizes: &[usize]) -> Self {
         assert!(sizes.len() >= 2, "a network has inputs and outputs");
-        let count = sizes.windows(2).map(|s| (s[0] + 1) * s[1]).sum();
-        Self { sizes: sizes.to_vec(), parameters: vec![0.0; count] }
+        Self { sizes: sizes.to_vec(), parameters: vec![0.0; Self::parameter_count(sizes)] }
+    }
+
+    /// Number of parameters of a network with these sizes.
+    #[must_use]
+    pub fn parameter_count(sizes: &[usize]) -> usize {
+        sizes.windows(2).map(|s| (s[0] + 1) * s[1]).sum()
     }
 
     /// Inputs, hidden sizes, outputs.

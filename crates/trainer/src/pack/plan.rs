@@ -2,10 +2,15 @@
 
 use std::path::Path;
 
-use policy_core::{EdgeEntry, PathEntry, SkillEntry};
+use policy_core::format::{CreditEntry, EdgeEntry, PathEntry, SkillEntry};
 use serde::Deserialize;
 
 use super::BindError;
+use crate::storage::read_text_bounded;
+use crate::text::quoted;
+
+/// Largest plan, bytes.
+const MOST_BYTES: u64 = 1 << 20;
 
 /// What a pack is to hold: nodes, edges, paths and skills by name. A TOML file.
 #[derive(Clone, Debug, PartialEq, Deserialize)]
@@ -30,6 +35,9 @@ pub struct PackPlan {
     /// Its episodic skills.
     #[serde(default)]
     pub skills: Vec<SkillEntry>,
+    /// Where the clips come from and under which licences.
+    #[serde(default)]
+    pub credits: Vec<CreditEntry>,
 }
 
 /// A node of the graph.
@@ -38,7 +46,7 @@ pub struct PackPlan {
 pub struct PlannedPolicy {
     /// Name of the skill that was trained.
     pub name: String,
-    /// Pelvis height below which the character has fallen, metres.
+    /// Root height below which the character has fallen, metres.
     #[serde(default)]
     pub fall_height: Option<f32>,
     /// Speed it was trained for, metres per second.
@@ -52,9 +60,10 @@ impl PackPlan {
     /// # Errors
     /// When the file can't be read, or has unknown or missing fields.
     pub fn load(path: &Path) -> Result<Self, BindError> {
-        let text = std::fs::read_to_string(path)
+        let text = read_text_bounded(path, MOST_BYTES)
             .map_err(|source| BindError::Io { path: path.to_owned(), source })?;
-        toml::from_str(&text).map_err(|e| BindError::Plan { path: path.to_owned(), message: e.to_string() })
+        toml::from_str(&text)
+            .map_err(|e| BindError::Plan { path: path.to_owned(), message: quoted(&e.to_string()) })
     }
 
     /// The plan without skills that `trained` refuses: their nodes, edges and episodic skills go, paths close over

@@ -1,42 +1,48 @@
-//! Hyper-parameters of PPO.
+//! Hyper-parameters of PPO. What no recipe changes is a constant.
 
 use serde::{Deserialize, Serialize};
 
-/// Hyper-parameters of PPO. Every field has the default of the recipe that worked.
+/// Discount of generalised advantage estimation (Schulman et al. 2016).
+pub const GAE_LAMBDA: f32 = 0.95;
+
+/// How far the ratio of probabilities may leave 1 before its gradient stops.
+pub const CLIP: f32 = 0.2;
+
+/// Learning rate of the critic.
+pub const CRITIC_LEARNING_RATE: f32 = 5e-4;
+
+/// Largest norm of the gradient of an actor or the critic.
+pub const MAX_GRAD_NORM: f32 = 1.0;
+
+/// Weight of the squared excess of |mean action| over 1.
+pub const BOUND_PENALTY: f32 = 10.0;
+
+/// Share that a policy's exponential moving average keeps at every update.
+pub const EMA_DECAY: f32 = 0.99;
+
+/// Hyper-parameters of PPO. The defaults are those of the recipe that worked.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct PpoConfig {
     /// Discount of a reward one tick later. 0.95 is enough for style, 0.98 for staying upright.
     pub gamma: f32,
-    /// Discount of generalised advantage estimation (Schulman et al. 2016).
-    pub gae_lambda: f32,
-    /// How far the ratio of probabilities may leave 1 before its gradient stops.
-    pub clip: f32,
     /// Passes over a rollout.
     pub epochs: usize,
     /// Rows of one gradient step.
     pub minibatch: usize,
-    /// Fixed standard deviation of every action.
-    pub deviation: f32,
-    /// Divergence from the acting policy that the actor's rate is steered to.
+    /// Fixed standard deviation of every action, in units of the action range.
+    pub action_std: f32,
+    /// KL divergence from the acting policy that the actors' learning rates are adapted to.
     pub target_kl: f32,
-    /// First rate of the actor's Adam.
-    pub actor_rate: f32,
-    /// Least rate of the actor's Adam.
-    pub least_actor_rate: f32,
-    /// Largest rate of the actor's Adam.
-    pub most_actor_rate: f32,
-    /// Rate of the critic's Adam.
-    pub critic_rate: f32,
-    /// Largest norm of either gradient.
-    pub gradient_norm: f32,
-    /// Weight of the squared excess of |mean action| over 1.
-    pub bound_penalty: f32,
-    /// Share that a policy's running mean keeps at every update.
-    pub average: f32,
-    /// Weight of the squared distance to the guiding actions of a rollout, where it has any.
-    #[serde(skip)]
-    pub guide: f32,
+    /// First learning rate of the actors.
+    pub learning_rate: f32,
+    /// Least learning rate of the actors.
+    pub min_learning_rate: f32,
+    /// Largest learning rate of the actors.
+    pub max_learning_rate: f32,
+    /// Behaviour-cloning weight: that of the squared distance between the mean action and the one that tracks the clip. Above
+    /// zero the learning rates stay at their largest value.
+    pub behaviour_cloning: f32,
     /// Weight of the squared distance to the parent's parameters.
     pub regularisation: f32,
     /// Hidden sizes of the critic.
@@ -47,20 +53,14 @@ impl Default for PpoConfig {
     fn default() -> Self {
         Self {
             gamma: 0.98,
-            gae_lambda: 0.95,
-            clip: 0.2,
             epochs: 4,
             minibatch: 2048,
-            deviation: 0.06,
+            action_std: 0.06,
             target_kl: 0.02,
-            actor_rate: 1e-4,
-            least_actor_rate: 2e-5,
-            most_actor_rate: 1e-3,
-            critic_rate: 5e-4,
-            gradient_norm: 1.0,
-            bound_penalty: 10.0,
-            average: 0.99,
-            guide: 0.0,
+            learning_rate: 1e-4,
+            min_learning_rate: 2e-5,
+            max_learning_rate: 1e-3,
+            behaviour_cloning: 0.0,
             regularisation: 0.0,
             critic_hidden: vec![256, 128],
         }

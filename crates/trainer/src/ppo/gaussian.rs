@@ -1,17 +1,17 @@
-//! A diagonal normal distribution of one fixed deviation: all that this PPO knows of action distributions.
+//! A diagonal normal distribution of one fixed action_std: all that this PPO knows of action distributions.
 
-/// Logarithm of the density of `action` under mean `mean` and the given deviation of every entry.
+/// Logarithm of the density of `action` under mean `mean` and the given action_std of every entry.
 #[must_use]
-pub fn log_probability(action: &[f32], mean: &[f32], deviation: f32) -> f32 {
-    let square: f32 = action.iter().zip(mean).map(|(a, m)| ((a - m) / deviation).powi(2)).sum();
-    let normaliser = deviation.ln() + 0.5 * std::f32::consts::TAU.ln();
+pub fn log_probability(action: &[f32], mean: &[f32], action_std: f32) -> f32 {
+    let square: f32 = action.iter().zip(mean).map(|(a, m)| ((a - m) / action_std).powi(2)).sum();
+    let normaliser = action_std.ln() + 0.5 * std::f32::consts::TAU.ln();
     -0.5 * square - action.len() as f32 * normaliser
 }
 
-/// Kullback-Leibler divergence between two such distributions of equal deviation.
+/// Kullback-Leibler kl between two such distributions of equal action_std.
 #[must_use]
-pub fn kl_divergence(mean: &[f32], other: &[f32], deviation: f32) -> f32 {
-    mean.iter().zip(other).map(|(a, b)| (a - b).powi(2)).sum::<f32>() / (2.0 * deviation * deviation)
+pub fn kl_divergence(mean: &[f32], other: &[f32], action_std: f32) -> f32 {
+    mean.iter().zip(other).map(|(a, b)| (a - b).powi(2)).sum::<f32>() / (2.0 * action_std * action_std)
 }
 
 #[cfg(test)]
@@ -23,7 +23,7 @@ mod tests {
         // One standard normal number at 1: exp(-1/2) / sqrt(2 pi).
         let expected = (-0.5_f32).exp() / std::f32::consts::TAU.sqrt();
         assert!((log_probability(&[1.0], &[0.0], 1.0).exp() - expected).abs() < 1e-6);
-        // Independent entries multiply, and a deviation scales the density.
+        // Independent entries multiply, and a action_std scales the density.
         let two = log_probability(&[0.3, -0.2], &[0.1, 0.1], 0.5);
         let each = log_probability(&[0.3], &[0.1], 0.5) + log_probability(&[-0.2], &[0.1], 0.5);
         assert!((two - each).abs() < 1e-5);

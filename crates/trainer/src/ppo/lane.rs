@@ -1,5 +1,6 @@
 //! One share of a minibatch: its rows, gathered edge by edge, and the gradients they give.
 
+use super::config::{BOUND_PENALTY, CLIP};
 use super::gaussian::{kl_divergence, log_probability};
 use super::learner::{Actor, line_of};
 use super::rollout::Rollout;
@@ -19,8 +20,8 @@ pub(super) struct Lane {
     /// One for each actor.
     pub(super) actor_gradients: Vec<Vec<f32>>,
     pub(super) critic_gradient: Vec<f32>,
-    /// Divergence and weight of the rows of each actor.
-    pub(super) divergence: Vec<[f32; 2]>,
+    /// KL divergence and weight of the rows of each actor.
+    pub(super) kl: Vec<[f32; 2]>,
     pub(super) sums: UpdateReport,
 }
 
@@ -39,7 +40,7 @@ impl Lane {
             groups: vec![Vec::new(); edges.len()],
             actor_gradients: vec![vec![0.0; actor.parameters.len()]; actors.len()],
             critic_gradient: vec![0.0; critic.parameters.len()],
-            divergence: vec![[0.0; 2]; actors.len()],
+            kl: vec![[0.0; 2]; actors.len()],
             sums: UpdateReport::default(),
         }
     }
@@ -47,7 +48,7 @@ impl Lane {
     pub(super) fn accumulate(&mut self, shared: &Shared<'_>, rows: &[u32]) {
         self.actor_gradients.iter_mut().for_each(|g| g.fill(0.0));
         self.critic_gradient.fill(0.0);
-        self.divergence.fill([0.0; 2]);
+        self.kl.fill([0.0; 2]);
         self.sums = UpdateReport::default();
         self.groups.iter_mut().for_each(Vec::clear);
         for row in rows {
@@ -82,8 +83,8 @@ impl Lane {
             let kl = shared.policy_gradient(*row as usize, mean, delta, &mut self.sums);
             let t = if from == to { 1.0 } else { *t };
             for (actor, weight) in [(from, 1.0 - t), (to, t)] {
-                self.divergence[actor][0] += weight * kl;
-                self.divergence[actor][1] += weight;
+                self.kl[actor][0] += weight * kl;
+                self.kl[actor][1] += weight;
             }
         }
         let (gradient, parent) = match self.actor_gradients.get_disjoint_mut([from, to]) {
@@ -117,35 +118,33 @@ pub(super) struct Shared<'a> {
     pub(super) edges: &'a [[usize; 2]],
     pub(super) critic: &'a Network,
     pub(super) gamma: f32,
-    pub(super) clip: f32,
-    pub(super) deviation: f32,
-    pub(super) bound_penalty: f32,
-    pub(super) guide: f32,
+    pub(super) action_std: f32,
+    pub(super) behaviour_cloning: f32,
     pub(super) scale: f32,
 }
 
 impl Shared<'_> {
     /// Gradient of the clipped surrogate (PPO, equation 7) and of the bound by the mean action of one row; returns the
-    /// row's divergence.
+    /// row's KL divergence.
     fn policy_gradient(&self, row: usize, mean: &[f32], delta: &mut [f32], sums: &mut UpdateReport) -> f32 {
         let numbers = row * mean.len()..(row + 1) * mean.len();
         let (action, acted) = (&self.rollout.actions[numbers.clone()], &self.rollout.means[numbers.clone()]);
-        let now = log_probability(action, mean, self.deviation);
-        let ratio = (now - log_probability(action, acted, self.deviation)).clamp(-20.0, 20.0).exp();
+        let now = log_probability(action, mean, self.action_std);
+        let ratio = (now - log_probability(action, acted, self.action_std)).clamp(-20.0, 20.0).exp();
         let advantage = self.rollout.advantages[row];
-        let stopped = if advantage > 0.0 { ratio > 1.0 + self.clip } else { ratio < 1.0 - self.clip };
-        let kl = kl_divergence(mean, acted, self.deviation);
+        let stopped = if advantage > 0.0 { ratio > 1.0 + CLIP } else { ratio < 1.0 - CLIP };
+        let kl = kl_divergence(mean, acted, self.action_std);
         sums.kl += kl;
-        sums.clipped += f32::from(u8::from((ratio - 1.0).abs() > self.clip));
-        let slope = if stopped { 0.0 } else { -advantage * ratio / (self.deviation * self.deviation) };
+        sums.clipped += f32::from(u8::from((ratio - 1.0).abs() > CLIP));
+        let slope = if stopped { 0.0 } else { -advantage * ratio / (self.action_std * self.action_std) };
         for ((d, m), a) in delta.iter_mut().zip(mean).zip(action) {
             let excess = (m.abs() - 1.0).max(0.0).copysign(*m);
-            *d = (slope * (a - m) + 2.0 * self.bound_penalty * excess) * self.scale;
+            *d = (slope * (a - m) + 2.0 * BOUND_PENALTY * excess) * self.scale;
         }
-        if self.guide > 0.0 {
-            let guides = delta.iter_mut().zip(mean).zip(&self.rollout.guides[numbers]);
-            for ((d, m), guide) in guides.filter(|(_, guide)| guide.is_finite()) {
-                *d += 2.0 * self.guide * (m - guide) * self.scale;
+        if self.behaviour_cloning > 0.0 {
+            let targets = delta.iter_mut().zip(mean).zip(&self.rollout.cloning_targets[numbers]);
+            for ((d, m), target) in targets.filter(|(_, target)| target.is_finite()) {
+                *d += 2.0 * self.behaviour_cloning * (m - target) * self.scale;
             }
         }
         kl

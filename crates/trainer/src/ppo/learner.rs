@@ -1,7 +1,7 @@
 //! Actor and critic, and what they do in a rollout.
 
 use super::batch::BatchEvaluator;
-use super::config::PpoConfig;
+use super::config::{EMA_DECAY, GAE_LAMBDA, PpoConfig};
 use super::lane::Lane;
 use super::rollout::Rollout;
 use crate::nn::{Adam, Line, Network};
@@ -12,16 +12,16 @@ use crate::rng::Rng;
 pub struct Actor {
     /// The policy.
     pub network: Network,
-    /// Its running mean over the updates: what is kept when training is over, for it does not shake with every one.
-    pub average: Network,
+    /// Its exponential moving average over the updates, which packs take: it is steadier than the policy itself.
+    pub ema: Network,
     /// Its optimiser.
     pub adam: Adam,
     /// Index of the actor it is pulled towards, if any.
     pub parent: Option<usize>,
     /// True when it stays as it is.
     pub frozen: bool,
-    /// Rate of its Adam now.
-    pub rate: f32,
+    /// Its present learning rate.
+    pub learning_rate: f32,
 }
 
 impl Actor {
@@ -29,7 +29,7 @@ impl Actor {
     #[must_use]
     pub fn learning(network: Network, parent: Option<usize>) -> Self {
         let adam = Adam::new(network.parameters.len());
-        Self { adam, average: network.clone(), network, parent, frozen: false, rate: 0.0 }
+        Self { adam, ema: network.clone(), network, parent, frozen: false, learning_rate: 0.0 }
     }
 
     /// A policy that stays as it is.
@@ -49,7 +49,7 @@ pub struct Learner {
     pub actors: Vec<Actor>,
     /// Pairs of actors that rows act between.
     pub edges: Vec<[usize; 2]>,
-    /// Guesses returns, scaled by `1 - gamma`, from policy inputs and the place on the course.
+    /// Guesses returns, scaled by `1 - gamma`, from policy inputs and the position on the graph.
     pub critic: Network,
     /// The critic's optimiser.
     pub critic_adam: Adam,
@@ -57,7 +57,7 @@ pub struct Learner {
     pub rng: Rng,
     pub(super) lanes: Vec<Lane>,
     pub(super) order: Vec<u32>,
-    pub(super) divergence: Vec<[f32; 2]>,
+    pub(super) kl: Vec<[f32; 2]>,
     gathered: Gathered,
     actor_batch: BatchEvaluator,
     critic_batch: BatchEvaluator,
@@ -86,7 +86,7 @@ impl Learner {
         critic: Network,
         rng: Rng,
     ) -> Self {
-        actors.iter_mut().for_each(|a| a.rate = config.actor_rate);
+        actors.iter_mut().for_each(|a| a.learning_rate = config.learning_rate);
         let first = &actors.first().expect("a learner has an actor").network;
         assert!(actors.iter().all(|a| a.network.sizes() == first.sizes()), "sizes of the actors");
         let named = edges.iter().flatten().copied().chain(actors.iter().filter_map(|a| a.parent));
@@ -98,7 +98,7 @@ impl Learner {
             critic_batch: BatchEvaluator::new(critic.sizes()),
             lanes: vec![lane; Lane::COUNT],
             order: Vec::new(),
-            divergence: vec![[0.0; 2]; actors.len()],
+            kl: vec![[0.0; 2]; actors.len()],
             gathered: Gathered::default(),
             bootstrap: Vec::new(),
             config,
@@ -109,11 +109,11 @@ impl Learner {
         }
     }
 
-    /// Moves the running means on by an update.
-    pub(super) fn average(&mut self) {
-        let keep = self.config.average;
+    /// Updates the exponential moving averages.
+    pub(super) fn update_ema(&mut self) {
+        let keep = EMA_DECAY;
         for actor in self.actors.iter_mut().filter(|a| !a.frozen) {
-            let pairs = actor.average.parameters.iter_mut().zip(&actor.network.parameters);
+            let pairs = actor.ema.parameters.iter_mut().zip(&actor.network.parameters);
             pairs.for_each(|(mean, now)| *mean = keep * *mean + (1.0 - keep) * now);
         }
     }
@@ -154,18 +154,18 @@ impl Learner {
 
     /// Draws the actions of tick `step` of a rollout whose inputs of that tick are there.
     pub fn act(&mut self, rollout: &mut Rollout, step: usize) {
-        let n = rollout.characters;
+        let n = rollout.num_envs;
         let (inputs, actions) = (self.actor().inputs(), self.actor().outputs());
         let rows = step * n..(step + 1) * n;
         let numbers = rows.start * actions..rows.end * actions;
         let input = &rollout.inputs[rows.start * inputs..rows.end * inputs];
         let (edge, blend) = (&rollout.edge[rows.clone()], &rollout.blend[rows.clone()]);
         self.means_into(input, edge, blend, &mut rollout.means[numbers.clone()]);
-        let means = rollout.means[numbers.clone()].chunks_exact(actions).zip(&rollout.quiet[rows]);
-        for (action, (mean, quiet)) in rollout.actions[numbers].chunks_exact_mut(actions).zip(means) {
-            let deviation = if *quiet { 0.0 } else { self.config.deviation };
+        let means = rollout.means[numbers.clone()].chunks_exact(actions).zip(&rollout.deterministic[rows]);
+        for (action, (mean, deterministic)) in rollout.actions[numbers].chunks_exact_mut(actions).zip(means) {
+            let action_std = if *deterministic { 0.0 } else { self.config.action_std };
             for (action, mean) in action.iter_mut().zip(mean) {
-                *action = mean + deviation * self.rng.normal();
+                *action = mean + action_std * self.rng.normal();
             }
         }
     }
@@ -177,22 +177,23 @@ impl Learner {
         rollout.values.iter_mut().for_each(|v| *v *= scale);
         let mut after = std::mem::take(&mut self.bootstrap);
         after.clear();
-        after.resize(rollout.characters + rollout.cut_off.len(), 0.0);
-        let (last, cut_off) = after.split_at_mut(rollout.characters);
+        after.resize(rollout.num_envs + rollout.cut_off.len(), 0.0);
+        let (last, cut_off) = after.split_at_mut(rollout.num_envs);
         self.critic_batch.evaluate(&self.critic, None, &rollout.last_critic_inputs, last);
         let rows: Vec<f32> = rollout.cut_off.iter().flat_map(|(_, row)| row.iter().copied()).collect();
         self.critic_batch.evaluate(&self.critic, None, &rows, cut_off);
         last.iter_mut().chain(cut_off.iter_mut()).for_each(|v| *v *= scale);
-        rollout.estimate_advantages(self.config.gamma, self.config.gae_lambda, last, cut_off);
+        rollout.estimate_advantages(self.config.gamma, GAE_LAMBDA, last, cut_off);
         rollout.normalise_advantages();
         self.bootstrap = after;
     }
 
-    /// Geometric mean of the rates of the actors that learn.
+    /// Geometric mean of the learning rates of the actors that learn.
     #[must_use]
-    pub fn actor_rate(&self) -> f32 {
+    pub fn learning_rate(&self) -> f32 {
         let learning = self.actors.iter().filter(|a| !a.frozen);
-        let (sum, count) = learning.fold((0.0, 0.0_f32), |(sum, count), a| (sum + a.rate.ln(), count + 1.0));
+        let (sum, count) =
+            learning.fold((0.0, 0.0_f32), |(sum, count), a| (sum + a.learning_rate.ln(), count + 1.0));
         (sum / count.max(1.0)).exp()
     }
 

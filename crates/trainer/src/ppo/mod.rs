@@ -13,7 +13,9 @@ mod rollout;
 mod update;
 
 pub use batch::BatchEvaluator;
-pub use config::PpoConfig;
+pub use config::{
+    BOUND_PENALTY, CLIP, CRITIC_LEARNING_RATE, EMA_DECAY, GAE_LAMBDA, MAX_GRAD_NORM, PpoConfig,
+};
 pub use gaussian::{kl_divergence, log_probability};
 pub use learner::{Actor, Learner};
 pub use rollout::{Done, Rollout};

@@ -1,4 +1,4 @@
-//! What a population of characters saw, did and got in some ticks, and what follows from it: advantages and returns.
+//! What environments observed, did and were paid in some ticks, and what follows: advantages and returns.
 
 /// How a tick ended.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -12,36 +12,36 @@ pub enum Done {
     TimedOut,
 }
 
-/// `steps` ticks of `characters` characters. Row `step * characters + character` of every buffer.
+/// `horizon` ticks of `num_envs` environments. Row `step * num_envs + env` of every buffer.
 #[derive(Clone, Debug)]
 pub struct Rollout {
     /// Ticks.
-    pub steps: usize,
-    /// Characters.
-    pub characters: usize,
+    pub horizon: usize,
+    /// Environments.
+    pub num_envs: usize,
     /// Inputs of the policy, `[rows][inputs]`.
     pub inputs: Vec<f32>,
     /// Edge every row acted on: an index into the learner's edges.
     pub edge: Vec<usize>,
     /// Blend weight every row acted with: 0 at the edge's first policy, 1 at its second.
     pub blend: Vec<f32>,
-    /// True for rows that act by the mean, without noise; no policy learns from them.
-    pub quiet: Vec<bool>,
-    /// Inputs of the critic, `[rows][critic inputs]`: those of the policy and where on the course it acted.
+    /// True for rows that act by the mean, without noise. No policy learns from them.
+    pub deterministic: Vec<bool>,
+    /// Inputs of the critic, `[rows][critic inputs]`: those of the policy and the position on the graph.
     pub critic_inputs: Vec<f32>,
     /// Actions taken, `[rows][actions]`.
     pub actions: Vec<f32>,
     /// Mean of the distribution they were drawn from.
     pub means: Vec<f32>,
-    /// Actions that the policy is guided towards, `[rows][actions]`; NaN in rows without one. Empty when nothing guides.
-    pub guides: Vec<f32>,
+    /// Targets of behaviour cloning, `[rows][actions]`; NaN in rows without one. Empty without behaviour cloning.
+    pub cloning_targets: Vec<f32>,
     /// Reward of every row.
     pub rewards: Vec<f32>,
     /// How every row ended.
     pub done: Vec<Done>,
     /// Critic inputs after every row that timed out, and its row.
     pub cut_off: Vec<(usize, Vec<f32>)>,
-    /// Critic inputs after the last tick, `[characters][critic inputs]`.
+    /// Critic inputs after the last tick, `[num_envs][critic inputs]`.
     pub last_critic_inputs: Vec<f32>,
     /// The critic's value of every row.
     pub values: Vec<f32>,
@@ -56,27 +56,27 @@ impl Rollout {
     /// Empty buffers for policies with so many inputs and actions, and a critic with so many inputs.
     #[must_use]
     pub fn new(
-        (steps, characters): (usize, usize),
+        (horizon, num_envs): (usize, usize),
         (inputs, critic_inputs): (usize, usize),
         actions: usize,
     ) -> Self {
-        let rows = steps * characters;
+        let rows = horizon * num_envs;
         let scalar = vec![0.0; rows];
         Self {
-            steps,
-            characters,
+            horizon,
+            num_envs,
             inputs: vec![0.0; rows * inputs],
             edge: vec![0; rows],
             blend: vec![1.0; rows],
-            quiet: vec![false; rows],
+            deterministic: vec![false; rows],
             critic_inputs: vec![0.0; rows * critic_inputs],
             actions: vec![0.0; rows * actions],
             means: vec![0.0; rows * actions],
-            guides: Vec::new(),
+            cloning_targets: Vec::new(),
             rewards: scalar.clone(),
             done: vec![Done::No; rows],
             cut_off: Vec::new(),
-            last_critic_inputs: vec![0.0; characters * critic_inputs],
+            last_critic_inputs: vec![0.0; num_envs * critic_inputs],
             values: scalar.clone(),
             advantages: scalar.clone(),
             returns: scalar.clone(),
@@ -87,7 +87,7 @@ impl Rollout {
     /// Rows in all.
     #[must_use]
     pub fn rows(&self) -> usize {
-        self.steps * self.characters
+        self.horizon * self.num_envs
     }
 
     /// Forgets which rows timed out, before the next ticks are recorded.
@@ -100,10 +100,10 @@ impl Rollout {
     /// # Panics
     /// When `done` has not one entry for each character.
     pub fn record(&mut self, step: usize, done: &[Done], critic_inputs_after: &[f32]) {
-        assert_eq!(done.len(), self.characters, "one end for each character");
-        let first = step * self.characters;
-        self.done[first..first + self.characters].copy_from_slice(done);
-        let len = critic_inputs_after.len() / self.characters;
+        assert_eq!(done.len(), self.num_envs, "one end for each environment");
+        let first = step * self.num_envs;
+        self.done[first..first + self.num_envs].copy_from_slice(done);
+        let len = critic_inputs_after.len() / self.num_envs;
         for (i, _) in done.iter().enumerate().filter(|(_, d)| **d == Done::TimedOut) {
             self.cut_off.push((first + i, critic_inputs_after[i * len..(i + 1) * len].to_vec()));
         }
@@ -112,35 +112,36 @@ impl Rollout {
     /// Generalised advantage estimation over rewards and values that are there already. `last` holds the values after
     /// the last tick, `cut_off` those after the rows of [`Rollout::cut_off`].
     pub fn estimate_advantages(&mut self, gamma: f32, lambda: f32, last: &[f32], cut_off: &[f32]) {
-        let n = self.characters;
+        let n = self.num_envs;
         let rows = self.rows();
         self.next_values[..rows - n].copy_from_slice(&self.values[n..]);
         self.next_values[rows - n..].copy_from_slice(last);
         for ((row, _), value) in self.cut_off.iter().zip(cut_off) {
             self.next_values[*row] = *value;
         }
-        for character in 0..n {
+        for env in 0..n {
             let mut advantage = 0.0;
-            for row in (0..self.steps).rev().map(|step| step * n + character) {
+            for row in (0..self.horizon).rev().map(|step| step * n + env) {
                 let next = if self.done[row] == Done::Failed { 0.0 } else { self.next_values[row] };
-                let surprise = self.rewards[row] + gamma * next - self.values[row];
+                let td_error = self.rewards[row] + gamma * next - self.values[row];
                 let carried = if self.done[row] == Done::No { gamma * lambda * advantage } else { 0.0 };
-                advantage = surprise + carried;
+                advantage = td_error + carried;
                 self.advantages[row] = advantage;
                 self.returns[row] = advantage + self.values[row];
             }
         }
     }
 
-    /// Shifts and scales the advantages to mean 0 and deviation 1; those of quiet rows, which tried nothing, become 0.
+    /// Shifts and scales the advantages to mean 0 and deviation 1; those of deterministic rows, which explore nothing, become 0.
     pub fn normalise_advantages(&mut self) {
-        let tried = || self.advantages.iter().zip(&self.quiet).filter(|(_, quiet)| !**quiet);
+        let tried =
+            || self.advantages.iter().zip(&self.deterministic).filter(|(_, deterministic)| !**deterministic);
         let n = tried().count().max(1) as f64;
         let mean = tried().map(|(a, _)| f64::from(*a)).sum::<f64>() / n;
         let variance = tried().map(|(a, _)| (f64::from(*a) - mean).powi(2)).sum::<f64>() / n;
         let deviation = variance.sqrt() + 1e-6;
-        for (a, quiet) in self.advantages.iter_mut().zip(&self.quiet) {
-            *a = if *quiet { 0.0 } else { ((f64::from(*a) - mean) / deviation) as f32 };
+        for (a, deterministic) in self.advantages.iter_mut().zip(&self.deterministic) {
+            *a = if *deterministic { 0.0 } else { ((f64::from(*a) - mean) / deviation) as f32 };
         }
     }
 }
@@ -193,7 +194,7 @@ mod tests {
     #[test]
     fn quiet_rows_have_returns_but_no_advantage() {
         let mut r = rollout(&[1.0, 5.0, 3.0], &[0.0; 3], &[Done::Failed; 3]);
-        r.quiet[1] = true;
+        r.deterministic[1] = true;
         r.estimate_advantages(0.9, 1.0, &[0.0], &[]);
         r.normalise_advantages();
         assert_eq!(r.returns, [1.0, 5.0, 3.0]);

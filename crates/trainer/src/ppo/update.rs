@@ -3,6 +3,7 @@
 
 use rayon::prelude::*;
 
+use super::config::{CRITIC_LEARNING_RATE, MAX_GRAD_NORM};
 use super::lane::{Lane, Shared};
 use super::learner::{Actor, Learner};
 use super::rollout::Rollout;
@@ -11,25 +12,25 @@ use crate::nn::clip_norm;
 /// Means over the rows of all gradient steps of one update.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct UpdateReport {
-    /// Divergence of the policy from the one that acted.
+    /// KL divergence of the policy from the one that acted.
     pub kl: f32,
     /// Squared error of the critic, in scaled returns.
     pub value_error: f32,
     /// Share of rows whose ratio left the clip range.
     pub clipped: f32,
     /// Largest norm of an actor's gradient before clipping.
-    pub gradient_norm: f32,
+    pub grad_norm: f32,
 }
 
 impl Learner {
-    /// Takes the gradient steps of all epochs and steers each actor's rate by the divergence of its rows that they cause.
+    /// Takes the gradient steps of all epochs. Adapts each actor's learning rate by the KL divergence of its rows.
     pub fn update(&mut self, rollout: &Rollout) -> UpdateReport {
         let rows = u32::try_from(rollout.rows()).expect("a rollout has fewer than 2^32 rows");
         self.order.clear();
         self.order.extend(0..rows);
         let mut total = UpdateReport::default();
         let mut steps = 0.0;
-        self.divergence.fill([0.0; 2]);
+        self.kl.fill([0.0; 2]);
         for epoch in 0..self.config.epochs {
             for i in (1..self.order.len()).rev() {
                 let other = self.rng.index(i + 1);
@@ -40,7 +41,7 @@ impl Learner {
                 let report = self.gradient_step(rollout, minibatch);
                 if epoch + 1 == self.config.epochs {
                     for lane in &self.lanes[..self.used_lanes(minibatch.len())] {
-                        for (sum, more) in self.divergence.iter_mut().zip(&lane.divergence) {
+                        for (sum, more) in self.kl.iter_mut().zip(&lane.kl) {
                             *sum = [sum[0] + more[0], sum[1] + more[1]];
                         }
                     }
@@ -48,14 +49,14 @@ impl Learner {
                 total.kl += report.kl;
                 total.value_error += report.value_error;
                 total.clipped += report.clipped;
-                total.gradient_norm += report.gradient_norm;
+                total.grad_norm += report.grad_norm;
                 steps += 1.0;
             }
             self.order = order;
         }
-        self.steer_rates();
-        self.average();
-        for value in [&mut total.kl, &mut total.value_error, &mut total.clipped, &mut total.gradient_norm] {
+        self.adapt_learning_rates();
+        self.update_ema();
+        for value in [&mut total.kl, &mut total.value_error, &mut total.clipped, &mut total.grad_norm] {
             *value /= steps;
         }
         total
@@ -68,10 +69,12 @@ impl Learner {
             edges: &self.edges,
             critic: &self.critic,
             gamma: self.config.gamma,
-            clip: self.config.clip,
-            deviation: self.config.deviation,
-            bound_penalty: self.config.bound_penalty,
-            guide: if rollout.guides.is_empty() { 0.0 } else { self.config.guide },
+            action_std: self.config.action_std,
+            behaviour_cloning: if rollout.cloning_targets.is_empty() {
+                0.0
+            } else {
+                self.config.behaviour_cloning
+            },
             scale: 1.0 / minibatch.len() as f32,
         };
         let share = minibatch.len().div_ceil(Lane::COUNT);
@@ -93,16 +96,16 @@ impl Learner {
         report.scale(1.0 / minibatch.len() as f32);
         for (index, gradient) in first.actor_gradients.iter_mut().enumerate() {
             pull_to_parent(&self.actors, index, self.config.regularisation, gradient);
-            let Actor { network, adam, frozen, rate, .. } = &mut self.actors[index];
+            let Actor { network, adam, frozen, learning_rate, .. } = &mut self.actors[index];
             if !*frozen {
-                let norm = clip_norm(gradient, self.config.gradient_norm);
-                report.gradient_norm = report.gradient_norm.max(norm);
-                adam.step(&mut network.parameters, gradient, *rate, 0.0);
+                let norm = clip_norm(gradient, MAX_GRAD_NORM);
+                report.grad_norm = report.grad_norm.max(norm);
+                adam.step(&mut network.parameters, gradient, *learning_rate, 0.0);
             }
         }
-        clip_norm(&mut first.critic_gradient, self.config.gradient_norm);
-        let rate = self.config.critic_rate;
-        self.critic_adam.step(&mut self.critic.parameters, &first.critic_gradient, rate, 0.0);
+        clip_norm(&mut first.critic_gradient, MAX_GRAD_NORM);
+        let parameters = &mut self.critic.parameters;
+        self.critic_adam.step(parameters, &first.critic_gradient, CRITIC_LEARNING_RATE, 0.0);
         report
     }
 
@@ -110,19 +113,20 @@ impl Learner {
         rows.div_ceil(rows.div_ceil(Lane::COUNT))
     }
 
-    /// Steers the rate of every actor that had rows by their mean divergence.
-    fn steer_rates(&mut self) {
+    /// Adapts the learning rate of every actor that had rows to their mean KL divergence.
+    fn adapt_learning_rates(&mut self) {
         let config = &self.config;
-        for (actor, [sum, weight]) in self.actors.iter_mut().zip(&self.divergence) {
+        for (actor, [sum, weight]) in self.actors.iter_mut().zip(&self.kl) {
             let kl = sum / weight;
-            if config.guide > 0.0 {
-                actor.rate = config.most_actor_rate;
+            if config.behaviour_cloning > 0.0 {
+                actor.learning_rate = config.max_learning_rate;
             } else if kl > 1.5 * config.target_kl {
-                actor.rate /= 1.3;
+                actor.learning_rate /= 1.3;
             } else if kl < config.target_kl / 1.5 {
-                actor.rate *= 1.3;
+                actor.learning_rate *= 1.3;
             }
-            actor.rate = actor.rate.clamp(config.least_actor_rate, config.most_actor_rate);
+            actor.learning_rate =
+                actor.learning_rate.clamp(config.min_learning_rate, config.max_learning_rate);
         }
     }
 }

@@ -22,10 +22,10 @@ impl Cart {
 fn learner(seed: u64) -> Learner {
     let config = PpoConfig {
         gamma: 0.9,
-        deviation: 0.3,
+        action_std: 0.3,
         minibatch: 256,
-        actor_rate: 1e-3,
-        most_actor_rate: 5e-3,
+        learning_rate: 1e-3,
+        max_learning_rate: 5e-3,
         ..PpoConfig::default()
     };
     let mut rng = Rng::new(seed, 0);
@@ -129,13 +129,13 @@ fn a_strong_pull_keeps_a_child_at_its_parent() {
 
 #[test]
 fn a_guide_leads_the_policy_and_rows_without_one_do_not() {
-    let led = |guide: f32| {
+    let led = |behaviour_cloning: f32| {
         let mut learner = learner(6);
-        learner.config.guide = 100.0;
+        learner.config.behaviour_cloning = 100.0;
         let mut rng = Rng::new(6, 1);
         let mut carts: Vec<Cart> = (0..CHARACTERS).map(|_| Cart::new(&mut rng)).collect();
         let mut rollout = Rollout::new((STEPS, CHARACTERS), (2, 3), 1);
-        rollout.guides = vec![guide; STEPS * CHARACTERS];
+        rollout.cloning_targets = vec![behaviour_cloning; STEPS * CHARACTERS];
         for _ in 0..20 {
             iterate(&mut learner, &mut carts, &mut rollout, &mut rng);
         }

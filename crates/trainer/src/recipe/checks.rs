@@ -1,250 +1,184 @@
-//! What must hold for the numbers of a recipe.
+//! What must hold between the fields of a recipe. The range of each number is checked before.
 
-use super::Recipe;
+use super::file::is_plain;
+use super::{Phase, Recipe};
 
 /// Whether it holds, the field, what was expected and what was found.
 type Check = (bool, &'static str, &'static str, String);
 
+/// Most rows of a rollout: num_envs times horizon.
+const MOST_ROWS: usize = 1 << 20;
+
+/// Most hidden layers of critic and discriminators.
+const MOST_HIDDEN: usize = 8;
+
+/// Most phases, clips, paths and skills.
+const MOST_ENTRIES: usize = 256;
+
 impl Recipe {
     pub(super) fn checks(&self) -> Vec<Check> {
-        let (env, ppo, disc) = (&self.environment, &self.ppo, &self.discriminator);
-        let plain = |s: &str| {
-            !s.is_empty() && s.chars().all(|c| c.is_ascii_lowercase() || c.is_ascii_digit() || c == '_')
+        let mut checks = self.graph_checks();
+        if checks.iter().all(|check| check.0) {
+            checks.extend(self.phases.iter().flat_map(|phase| self.phase_checks(phase)));
+            checks.extend(self.phases.iter().flat_map(|phase| self.reward_checks(phase)));
+        }
+        checks
+    }
+
+    /// Names, clips, paths and phases.
+    fn graph_checks(&self) -> Vec<Check> {
+        let skills = || self.paths.iter().flatten();
+        let named = skills().chain(&self.parent);
+        let on_a_path = |ends: &[String; 2]| {
+            let joined = |pair: &[String]| pair == ends;
+            self.paths.iter().any(|path| path.windows(2).any(joined))
         };
-        let unit = |x: f32| (0.0..=1.0).contains(&x);
-        let positive = |x: f32| x.is_finite() && x > 0.0;
-        let ordered = |[a, b]: [f32; 2]| a.is_finite() && b.is_finite() && 0.0 <= a && a <= b;
+        let twice = |path: &Vec<String>| (1..path.len()).any(|i| path[..i].contains(&path[i]));
+        let count = |what: usize| (1..=MOST_ENTRIES).contains(&what);
+        let (clips, paths) = (self.clips.len(), self.paths.len());
+        let names = "lower-case letters, digits and underscores, at most 64";
         vec![
-            (plain(&self.skill), "skill", "lower-case letters, digits and underscores", self.skill.clone()),
+            (is_plain(&self.skill), "skill", names, self.skill.clone()),
+            (
+                named.clone().all(|n| is_plain(n)),
+                "parent and paths",
+                names,
+                format!("{:?} {:?}", self.parent, self.paths),
+            ),
+            (self.clips.iter().all(|c| is_plain(&c.name)), "clips.name", names, format!("{:?}", self.clips)),
+            (named.clone().all(|n| *n != self.skill), "parent and paths", "other skills", self.skill.clone()),
             (!self.edge || self.parent.is_some(), "edge", "a parent beside it", "none".into()),
             (
-                self.clips.is_empty() != self.paths.is_empty(),
+                (clips == 0) != (paths == 0),
                 "clips",
                 "at least one clip, or paths instead",
-                format!("{} clips and {} paths", self.clips.len(), self.paths.len()),
+                format!("{clips} clips and {paths} paths"),
             ),
             (
-                self.paths.is_empty() || self.parent.is_none(),
+                clips <= MOST_ENTRIES && skills().count() <= MOST_ENTRIES,
+                "clips and paths",
+                "at most 256 entries",
+                format!("{clips} clips and {} skills", skills().count()),
+            ),
+            (
+                paths == 0 || self.parent.is_none(),
                 "parent",
                 "none beside paths",
                 self.parent.clone().unwrap_or_default(),
             ),
             (
-                self.paths.iter().all(|p| p.len() > 1),
+                self.paths.iter().all(|p| p.len() > 1 && !twice(p)),
                 "paths",
-                "at least two skills in each",
+                "at least two skills in each, none of them twice",
                 format!("{:?}", self.paths),
             ),
             (
-                self.frozen.iter().all(|name| self.paths.iter().flatten().any(|n| n == name)),
-                "frozen",
-                "skills of the paths",
-                format!("{:?}", self.frozen),
+                self.halfway.iter().all(on_a_path),
+                "halfway",
+                "edges of the paths",
+                format!("{:?}", self.halfway),
+            ),
+            (count(self.phases.len()), "phases", "1 to 256 phases", self.phases.len().to_string()),
+        ]
+    }
+
+    /// One phase, by itself and beside the first one.
+    fn phase_checks(&self, phase: &Phase) -> Vec<Check> {
+        let Phase { environment: env, ppo, discriminator, .. } = phase;
+        let first = self.first();
+        let (reset, command) = (&env.reset, &env.command);
+        let ordered = |[least, most]: [f32; 2]| least <= most;
+        let rows = env.num_envs.saturating_mul(env.horizon);
+        let hidden = |sizes: &[usize]| (1..=MOST_HIDDEN).contains(&sizes.len());
+        let secs = [command.target_secs, command.edge_sweep_secs, command.edge_rest_secs];
+        let between = [secs[0], secs[1], secs[2], command.target_metres, env.exploration.deterministic_secs];
+        let same = (env.num_envs, env.horizon, &reset.clips, ppo.minibatch, &ppo.critic_hidden) == {
+            let (env, ppo) = (&first.environment, &first.ppo);
+            (env.num_envs, env.horizon, &env.reset.clips, ppo.minibatch, &ppo.critic_hidden)
+        } && (&discriminator.hidden, discriminator.batch, discriminator.replay_size)
+            == (&first.discriminator.hidden, first.discriminator.batch, first.discriminator.replay_size);
+        let skill = |e: &crate::env::EnvironmentConfig| e.reset.hand_over.as_ref().map(|h| h.skill.clone());
+        vec![
+            (
+                rows <= MOST_ROWS,
+                "environment.num_envs times horizon",
+                "at most 1048576 rows",
+                rows.to_string(),
             ),
             (
-                self.clips.iter().all(|c| positive(c.share)),
-                "clips.share",
-                "positive shares",
-                format!("{:?}", self.clips),
+                same && skill(env) == skill(&first.environment),
+                "phases",
+                "the same num_envs, horizon, minibatch, hidden sizes, batch, replay_size, reset.clips and hand_over.skill",
+                "others".into(),
             ),
             (
-                self.phases
-                    .iter()
-                    .all(|p| p.terrain_metres == 0.0 || (0.01..=0.5).contains(&p.terrain_metres)),
-                "phases.terrain_metres",
-                "0, or 0.01 to 0.5",
-                format!("{:?}", self.phases),
+                hidden(&ppo.critic_hidden) && hidden(&discriminator.hidden),
+                "critic_hidden and hidden",
+                "1 to 8 hidden layers",
+                format!("{} and {}", ppo.critic_hidden.len(), discriminator.hidden.len()),
             ),
             (
-                env.push_secs >= 0.0 && (0.0..=5000.0).contains(&env.push_newton),
-                "environment.push_secs and push_newton",
-                "a time of at least 0, and 0 to 5000 newton",
-                format!("{} and {}", env.push_secs, env.push_newton),
+                between.into_iter().all(ordered),
+                "target_metres, target_secs, edge_sweep_secs, edge_rest_secs and deterministic_secs",
+                "the least value before the largest",
+                format!("{between:?}"),
             ),
             (
-                self.paths.is_empty() || self.phases.iter().all(|p| p.guide == 0.0),
-                "phases.guide",
+                ppo.min_learning_rate <= ppo.max_learning_rate,
+                "ppo.min_learning_rate and max_learning_rate",
+                "the least value before the largest",
+                format!("{} and {}", ppo.min_learning_rate, ppo.max_learning_rate),
+            ),
+        ]
+    }
+
+    /// What goes with skills alone, and what with skills that are trained together.
+    fn reward_checks(&self, phase: &Phase) -> Vec<Check> {
+        let Phase { environment, ppo, .. } = phase;
+        let (reward, reset) = (&environment.reward, &environment.reset);
+        let together = !self.paths.is_empty();
+        vec![
+            (
+                together || reward.task_weight + reward.tracking_weight <= 1.0 + 1e-6,
+                "environment.reward.task_weight and tracking_weight",
+                "weights that sum to at most 1",
+                format!("{} and {}", reward.task_weight, reward.tracking_weight),
+            ),
+            (
+                !together || ppo.behaviour_cloning == 0.0,
+                "ppo.behaviour_cloning",
                 "none beside paths",
-                format!("{:?}", self.phases),
+                ppo.behaviour_cloning.to_string(),
             ),
             (
-                self.paths.is_empty()
-                    || env.imitators > 0.0
-                    || self.phases.iter().all(|p| p.imitation.unwrap_or(env.imitation) == 0.0),
-                "phases.imitation",
-                "none beside paths without imitators",
-                format!("{:?}", self.phases),
+                !together || reward.tracking_share > 0.0 || reward.tracking_weight == 0.0,
+                "environment.reward.tracking_weight",
+                "none beside paths without a tracking_share",
+                reward.tracking_weight.to_string(),
             ),
             (
-                env.start.after.as_ref().is_none_or(|after| unit(after.share) && !self.paths.is_empty()),
-                "environment.start.after",
-                "a share in [0, 1], beside paths",
-                format!("{:?}", env.start.after),
+                together || reward.tracking_share == 0.0,
+                "environment.reward.tracking_share",
+                "none without paths",
+                reward.tracking_share.to_string(),
             ),
             (
-                env.slide_cost.is_finite() && env.slide_cost >= 0.0,
-                "environment.slide_cost",
-                "a weight of at least 0",
-                env.slide_cost.to_string(),
+                together || reset.hand_over.is_none(),
+                "environment.reset.hand_over",
+                "none without paths",
+                format!("{:?}", reset.hand_over),
             ),
             (
-                self.phases.iter().all(|p| (0.0..1.0).contains(&p.quiet.unwrap_or(env.quiet)))
-                    && ordered(env.quiet_secs),
-                "quiet and environment.quiet_secs",
-                "a share below 1, and seconds from least to most",
-                format!("{}, {:?} and {:?}", env.quiet, env.quiet_secs, self.phases),
+                together || reward.tracking_weight == 0.0 || reset.pre_failure_share == 0.0,
+                "environment.reset.pre_failure_share",
+                "none beside tracking: such a start has no clip to track",
+                reset.pre_failure_share.to_string(),
             ),
             (
-                unit(env.imitators) && (env.imitators == 0.0 || !self.paths.is_empty()),
-                "environment.imitators",
-                "a share, beside paths",
-                env.imitators.to_string(),
-            ),
-            (
-                self.phases.iter().all(|p| p.guide.is_finite() && p.guide >= 0.0),
-                "phases.guide",
-                "a weight of at least 0",
-                format!("{:?}", self.phases),
-            ),
-            (!self.phases.is_empty(), "phases", "at least one phase", "none".into()),
-            (
-                self.phases.iter().all(|p| {
-                    let imitation = p.imitation.unwrap_or(env.imitation);
-                    let beside = if self.paths.is_empty() { imitation } else { 0.0 };
-                    unit(p.task) && unit(imitation) && unit(p.task + beside)
-                }),
-                "phases.task and imitation",
-                "weights in [0, 1] that sum to at most 1",
-                format!("{:?}", self.phases),
-            ),
-            (
-                (1..=65_536).contains(&env.characters),
-                "environment.characters",
-                "1 to 65536",
-                env.characters.to_string(),
-            ),
-            ((1..=1024).contains(&env.steps), "environment.steps", "1 to 1024", env.steps.to_string()),
-            (
-                env.episode_ticks > 0 && self.phases.iter().all(|p| p.episode_ticks != Some(0)),
-                "episode_ticks",
-                "at least 1",
-                "0".into(),
-            ),
-            (
-                self.phases.iter().all(|p| {
-                    let cost = p.fall_cost.unwrap_or(env.fall_cost);
-                    cost.is_finite() && cost >= 0.0
-                }),
-                "fall_cost",
-                "rewards of at least 0",
-                format!("{} and {:?}", env.fall_cost, self.phases),
-            ),
-            (
-                self.phases.iter().all(|p| {
-                    let imitates = p.imitation.unwrap_or(env.imitation) > 0.0;
-                    !imitates || !self.paths.is_empty() || p.mishap.unwrap_or(env.start.mishap) == 0.0
-                }),
-                "mishap",
-                "none beside imitation: what was to be imitated is forgotten",
-                env.start.mishap.to_string(),
-            ),
-            (
-                positive(env.least_width_mps) && positive(env.lost_metres),
-                "environment.least_width_mps and lost_metres",
-                "a positive speed and a positive distance",
-                format!("{} and {}", env.least_width_mps, env.lost_metres),
-            ),
-            (env.speed_mps.is_finite(), "environment.speed_mps", "a finite speed", env.speed_mps.to_string()),
-            (
-                ordered(env.target_metres),
-                "environment.target_metres",
-                "least and most distance",
-                format!("{:?}", env.target_metres),
-            ),
-            (
-                ordered(env.target_secs),
-                "environment.target_secs",
-                "least and most time",
-                format!("{:?}", env.target_secs),
-            ),
-            (
-                [
-                    env.height,
-                    env.strict_facing,
-                    env.sweep,
-                    env.stop,
-                    env.stick,
-                    env.jump,
-                    env.start.other,
-                    env.start.launched,
-                    env.start.anywhere,
-                    env.start.ragdoll,
-                    env.start.mishap,
-                ]
-                .into_iter()
-                .all(unit),
-                "environment.height, strict_facing, sweep, stop, stick, jump and start",
-                "shares in [0, 1]",
-                format!(
-                    "{}, {}, {}, {}, {}, {} and {:?}",
-                    env.height, env.strict_facing, env.sweep, env.stop, env.stick, env.jump, env.start
-                ),
-            ),
-            (
-                ordered(env.edge_sweep_secs)
-                    && ordered(env.edge_rest_secs)
-                    && ordered(env.sweep_secs)
-                    && env.edge_sweep_secs[0].min(env.sweep_secs[0]) > 0.0
-                    && (0.0..60.0).contains(&env.edge_secs),
-                "environment.sweep_secs, edge_sweep_secs, edge_rest_secs and edge_secs",
-                "least and most time above 0, twice, least and most time, and 0 to 60 s",
-                format!(
-                    "{:?}, {:?}, {:?} and {}",
-                    env.sweep_secs, env.edge_sweep_secs, env.edge_rest_secs, env.edge_secs
-                ),
-            ),
-            ((0.0..1.0).contains(&ppo.gamma), "ppo.gamma", "a discount in [0, 1)", ppo.gamma.to_string()),
-            ((0.0..1.0).contains(&ppo.average), "ppo.average", "a share in [0, 1)", ppo.average.to_string()),
-            (unit(ppo.gae_lambda), "ppo.gae_lambda", "a discount in [0, 1]", ppo.gae_lambda.to_string()),
-            (positive(ppo.deviation), "ppo.deviation", "a positive deviation", ppo.deviation.to_string()),
-            (
-                self.phases.iter().all(|p| {
-                    let shares = [p.ragdoll, p.other, p.mishap];
-                    p.deviation.is_none_or(positive) && shares.into_iter().flatten().all(unit)
-                }),
-                "phases.deviation, ragdoll, other and mishap",
-                "a positive deviation and shares in [0, 1]",
-                format!("{:?}", self.phases),
-            ),
-            (
-                ppo.epochs > 0 && ppo.minibatch > 0,
-                "ppo.epochs and minibatch",
-                "at least 1",
-                format!("{} and {}", ppo.epochs, ppo.minibatch),
-            ),
-            (
-                positive(ppo.actor_rate) && positive(ppo.critic_rate),
-                "ppo.actor_rate and critic_rate",
-                "positive rates",
-                format!("{} and {}", ppo.actor_rate, ppo.critic_rate),
-            ),
-            (
-                ppo.regularisation >= 0.0,
-                "ppo.regularisation",
-                "a weight of at least 0",
-                ppo.regularisation.to_string(),
-            ),
-            (
-                !ppo.critic_hidden.is_empty() && !disc.hidden.is_empty(),
-                "hidden",
-                "at least one hidden layer",
-                "none".into(),
-            ),
-            (
-                disc.rows > 0 && disc.replay > 0,
-                "discriminator.rows and replay",
-                "at least 1",
-                format!("{} and {}", disc.rows, disc.replay),
+                reset.clips.len() <= MOST_ENTRIES && reset.clips.iter().all(|name| is_plain(name)),
+                "environment.reset.clips",
+                "at most 256 names of clips",
+                format!("{:?}", reset.clips),
             ),
         ]
     }

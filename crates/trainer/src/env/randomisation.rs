@@ -1,0 +1,132 @@
+//! Differences between environments: ground, strength, friction, latency and pushes. A policy that met them in training
+//! keeps its balance in worlds that differ from the training's.
+
+use glam::Vec2;
+use physics_bridge::{Model, ModelError, Settings, Terrain};
+use policy_core::{BodyId, Skeleton};
+use serde::{Deserialize, Serialize};
+
+use super::command::DT_SECS;
+use super::env::{Env, EnvContext};
+
+/// Length of a push, seconds.
+pub const PUSH_SECS: f32 = 0.2;
+
+/// From crest to crest of the waves, metres.
+const WAVELENGTH_METRES: f32 = 6.0;
+
+/// Waves that differ in the places of their hills.
+const WAVES: u32 = 3;
+
+/// Height of a step as a share of the height of the waves, its depth in metres, and steps up before the steps down.
+const STEP_RISE_SHARE: f32 = 0.3;
+const STEP_RUN_METRES: f32 = 0.9;
+const STEP_COUNT: u32 = 5;
+
+/// Changes of strength and friction in units of [`RandomisationConfig::dynamics`]. Half of the bodies stay as they are.
+const DYNAMICS: [[f32; 2]; 6] = [[0.0, 0.0], [0.0, 0.0], [-1.0, 0.0], [0.0, 0.0], [0.5, -1.5], [-0.5, 1.0]];
+
+/// Ground, pushes and differences of the body.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+pub struct RandomisationConfig {
+    /// Height of the hills of wavy ground, metres; zero for flat ground alone. Above zero one environment of five is flat,
+    /// one has steps and three have waves.
+    pub terrain_metres: f32,
+    /// Largest relative change of the motors' strength; friction changes by up to 1.5 times as much.
+    pub dynamics: f32,
+    /// Share of episodes in which every action arrives one tick late.
+    pub latency_share: f32,
+    /// Mean seconds between pushes of 0.2 s; zero for none.
+    pub push_secs: f32,
+    /// Largest force of a push, newton.
+    pub push_newton: f32,
+    /// Names of the bodies that are pushed; the root when there are none.
+    pub push_bodies: Vec<String>,
+}
+
+impl RandomisationConfig {
+    /// The bodies that are pushed.
+    ///
+    /// # Errors
+    /// The name of a body that the character does not have.
+    pub fn pushed(&self, skeleton: &Skeleton) -> Result<Vec<BodyId>, String> {
+        if self.push_bodies.is_empty() {
+            return Ok(vec![skeleton.root()]);
+        }
+        self.push_bodies.iter().map(|name| skeleton.body_named(name).ok_or_else(|| name.clone())).collect()
+    }
+
+    /// Every combination of ground and body that environments are spread over.
+    ///
+    /// # Errors
+    /// When the model can't be set on a ground or changed as much.
+    pub fn models(&self, model: &Model) -> Result<Vec<Model>, ModelError> {
+        let mut grounds = vec![model.clone()];
+        if self.terrain_metres > 0.0 {
+            let rise_m = (STEP_RISE_SHARE * self.terrain_metres).max(0.01);
+            let steps = Terrain::Steps { rise_m, run_m: STEP_RUN_METRES, count: STEP_COUNT };
+            grounds.push(model.with_terrain(steps)?);
+            for seed in 1..=WAVES {
+                let height_m = self.terrain_metres;
+                let waves = Terrain::Wavy { height_m, wavelength_m: WAVELENGTH_METRES, seed };
+                grounds.push(model.with_terrain(waves)?);
+            }
+        }
+        if self.dynamics == 0.0 {
+            return Ok(grounds);
+        }
+        let mut models = Vec::new();
+        for [strength, friction] in DYNAMICS.map(|change| change.map(|units| 1.0 + self.dynamics * units)) {
+            for ground in &grounds {
+                models.push(ground.with_settings(Settings { strength, friction, ..Settings::default() })?);
+            }
+        }
+        Ok(models)
+    }
+}
+
+impl Env {
+    /// Now and then begins a push in a random horizontal direction.
+    pub(super) fn push(&mut self, context: &EnvContext<'_>) {
+        let config = &context.config.randomisation;
+        if config.push_secs > 0.0 && self.rng.chance(DT_SECS / config.push_secs) {
+            let force = Vec2::from_angle(self.rng.angle()) * self.rng.uniform() * config.push_newton;
+            let body = context.pushed[self.rng.index(context.pushed.len())];
+            self.character
+                .push(body, force.extend(0.0), PUSH_SECS)
+                .expect("a recipe's push is between 0 and 5000 newton");
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::path::Path;
+
+    use super::*;
+
+    fn model() -> Model {
+        Model::load(Path::new(env!("CARGO_MANIFEST_DIR")).join("../../assets/humanoid.xml")).unwrap()
+    }
+
+    #[test]
+    fn environments_are_spread_over_grounds_and_bodies() {
+        let of = |terrain_metres, dynamics| {
+            let config = RandomisationConfig { terrain_metres, dynamics, ..RandomisationConfig::default() };
+            config.models(&model()).unwrap()
+        };
+        assert_eq!(of(0.0, 0.0).len(), 1);
+        let grounds = of(0.1, 0.0);
+        let waves = grounds.iter().filter(|m| matches!(m.terrain(), Terrain::Wavy { .. })).count();
+        let steps = grounds.iter().filter(|m| matches!(m.terrain(), Terrain::Steps { .. })).count();
+        assert_eq!((grounds.len(), waves, steps), (5, 3, 1));
+        let bodies = of(0.1, 0.2);
+        assert_eq!(bodies.len(), 30);
+        let plain = bodies.iter().filter(|m| m.settings() == Settings::default()).count();
+        assert_eq!(plain, 15, "half of the bodies are as they are");
+        let weakest = bodies.iter().map(|m| m.settings().strength).fold(9.0, f32::min);
+        let slipperiest = bodies.iter().map(|m| m.settings().friction).fold(9.0, f32::min);
+        assert!((weakest - 0.8).abs() < 1e-6 && (slipperiest - 0.7).abs() < 1e-6, "{weakest} {slipperiest}");
+    }
+}

@@ -1,0 +1,126 @@
+//! Starts where an episodic skill hands over: the character is dropped limp and the skill raises it, as in a game.
+
+use policy_core::training::RISE_SECONDS;
+use policy_core::{Command as GameCommand, Controller, SkillEnd, SkillId};
+
+use super::super::command::{Command, DT_SECS};
+use super::super::env::{Env, EnvContext};
+
+/// Ticks that the skill may take, twice what a game gives a rise; after that the start is given up.
+const RISE_TICKS: u32 = (2.0 * RISE_SECONDS / DT_SECS) as u32;
+
+/// An episodic skill that raises a character, and where on the graph it hands over.
+#[derive(Clone, Debug)]
+pub struct HandOver {
+    /// A controller of a pack with the skill, without automatic recovery.
+    pub controller: Controller,
+    /// The skill in that pack.
+    pub skill: SkillId,
+    /// Node of the graph that the skill returns to.
+    pub node: usize,
+}
+
+impl Env {
+    /// Starts an episode at the tick in which the skill hands over to its node; false when there is no such skill or it did not
+    /// succeed.
+    pub(in super::super) fn start_at_hand_over(&mut self, context: &EnvContext<'_>) -> bool {
+        let Some(hand_over) = context.hand_over else { return false };
+        let pose = context.demonstrations[hand_over.node].sample_reference_state(&mut self.rng);
+        self.drop_limp(context, &pose);
+        let mut controller = hand_over.controller.clone();
+        controller.reset();
+        let mut asked = GameCommand { skill: Some(hand_over.skill), ..GameCommand::default() };
+        for _ in 0..RISE_TICKS {
+            let targets = controller.tick(&self.state, &asked, DT_SECS);
+            self.character.actuate(targets);
+            asked.skill = None;
+            match controller.report().skill_ended {
+                Some((_, SkillEnd::Recognised)) => {
+                    self.tracking = None;
+                    self.command = Command::start_at(
+                        &context.config.command,
+                        context.graph,
+                        hand_over.node,
+                        &mut self.rng,
+                    );
+                    let at = (self.root_position(), self.heading().angle());
+                    self.command.aim(&context.config.command, context.graph, at, &mut self.rng);
+                    return true;
+                }
+                Some(_) => return false,
+                None => {}
+            }
+            if self.character.step().is_err() {
+                return false;
+            }
+            self.character.sense_into(&mut self.state);
+            self.push_frame(context);
+        }
+        false
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::path::Path;
+    use std::sync::Arc;
+
+    use physics_bridge::Model;
+    use policy_core::{CharacterPack, ControllerConfig, NodeId};
+
+    use super::super::super::config::EnvironmentConfig;
+    use super::super::super::demonstrations::Demonstrations;
+    use super::super::super::graph::{GraphNode, TrainingGraph};
+    use super::super::super::normalisers::Normalisers;
+    use super::super::super::termination::TerminationHeights;
+    use super::*;
+    use crate::Rng;
+    use crate::clip::tests::still;
+
+    #[test]
+    fn the_shipped_skill_hands_over_a_character_that_stands() {
+        let assets = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../assets");
+        let model = Model::load(assets.join("humanoid.xml")).unwrap();
+        let pack = std::fs::read(assets.join("humanoid.pack.safetensors")).unwrap();
+        let pack = Arc::new(CharacterPack::from_bytes(&pack).unwrap());
+        let normalisers = Normalisers {
+            observation: pack.tensors().observation_normaliser.clone(),
+            frame: pack.tensors().discriminator_normaliser.clone(),
+        };
+        let clips =
+            Demonstrations::from_clips(&[(still(30), 1.0, false)], &model, &normalisers.frame).unwrap();
+        let config = EnvironmentConfig::default();
+        let nodes = ["walk", "idle"].map(|name| GraphNode::new(name, &config, 1.0)).to_vec();
+        let graph = TrainingGraph::along(nodes, &[vec![1, 0]], [1.0; 2]).unwrap();
+        let hand_over = HandOver {
+            skill: pack.skill_named("get_up").unwrap(),
+            controller: Controller::with_config(
+                pack,
+                ControllerConfig { auto_recover: false, assist_rise: false, ..Default::default() },
+            ),
+            node: 1,
+        };
+        let context = EnvContext {
+            config: &config,
+            skeleton: model.skeleton(),
+            graph: &graph,
+            demonstrations: &[&clips, &clips],
+            start_demonstrations: None,
+            hand_over: Some(&hand_over),
+            normalisers: &normalisers,
+            heights: &TerminationHeights::new(&config.termination, model.skeleton()).unwrap(),
+            pushed: &[],
+        };
+        let mut env = Env::new(&model, Rng::new(7, 0));
+        let mut up = 0;
+        for _ in 0..8 {
+            if env.start_at_hand_over(&context) {
+                assert!(env.state.root_height() > 0.7 && !env.tracks());
+                assert_eq!(env.command.position.as_node(), Some(NodeId::new(1)));
+                up += 1;
+            }
+        }
+        assert!(up >= 6, "{up} of 8");
+        assert!(!env.start_at_hand_over(&EnvContext { hand_over: None, ..context }));
+    }
+}

@@ -1,0 +1,50 @@
+use std::path::Path;
+
+use glam::{Quat, Vec3};
+use physics_bridge::Model;
+
+use super::super::config::EnvironmentConfig;
+use super::super::demonstrations::Demonstrations;
+use super::super::graph::{GraphNode, TrainingGraph};
+use super::super::normalisers::Normalisers;
+use super::super::termination::TerminationHeights;
+use super::*;
+use crate::Rng;
+use crate::clip::tests::still;
+
+#[test]
+fn a_standing_start_is_upright_and_moves_ahead() {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../assets/humanoid.xml");
+    let model = Model::load(path).unwrap();
+    let mut tilted = still(30);
+    tilted.local_rotations = vec![vec![Quat::from_rotation_x(0.3); 15]; 30];
+    let normalisers = Normalisers::from_clips(std::slice::from_ref(&tilted), &model).unwrap();
+    let clips = Demonstrations::from_clips(&[(tilted, 1.0, false)], &model, &normalisers.frame).unwrap();
+    let mut config = EnvironmentConfig::default();
+    (config.reset.standing_share, config.reward.tracking_weight) = (1.0, 0.5);
+    let context = EnvContext {
+        config: &config,
+        skeleton: model.skeleton(),
+        graph: &TrainingGraph::alone(vec![GraphNode::new("walk", &config, 1.0)], 0).unwrap(),
+        demonstrations: &[&clips],
+        start_demonstrations: None,
+        hand_over: None,
+        normalisers: &normalisers,
+        heights: &TerminationHeights::new(&config.termination, model.skeleton()).unwrap(),
+        pushed: &[],
+    };
+    let mut env = Env::new(&model, Rng::new(5, 0));
+    let mut speeds = Vec::new();
+    for _ in 0..20 {
+        env.reset(&context, false);
+        let root = *env.state.root();
+        assert!((root.rotation * Vec3::Z).z > 0.999 && env.state.root_height() > 0.8);
+        let along = root.linear_velocity.truncate().dot(env.heading().direction());
+        assert!((along - root.linear_velocity.length()).abs() < 1e-4, "{:?}", root.linear_velocity);
+        assert!(!env.tracks(), "a clip that it did not start in");
+        speeds.push(along);
+    }
+    let most = speeds.iter().copied().fold(0.0, f32::max);
+    assert!(most <= WALKING_START_MPS && most > 0.7 * WALKING_START_MPS, "{speeds:?}");
+    assert!(speeds.iter().any(|speed| *speed < 0.3 * WALKING_START_MPS), "{speeds:?}");
+}

@@ -1,0 +1,11 @@
+//! How a character responds to the stick: turns, starts, stops, and the way straight ahead.
+
+mod start;
+mod stop;
+mod straight;
+mod turn;
+
+pub use start::{StartReport, measure_starts};
+pub use stop::{StopReport, measure_stops};
+pub use straight::{StraightPoint, commanded_mps, measure_straight};
+pub use turn::{TURNS_DEGREES, TurnDetector, TurnReport, measure_turns};

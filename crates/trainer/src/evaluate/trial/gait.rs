@@ -1,0 +1,96 @@
+//! The gaits that a pad can ask for, and how the pad is held for each.
+
+use policy_core::bindings::{Bindings, Control};
+use policy_core::{Buttons, CharacterPack, GamepadState, NodeId};
+
+/// A way to hold the pad.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Gait {
+    /// Name in reports.
+    pub name: &'static str,
+    /// The pad: straight ahead, where the gait moves.
+    pub pad: GamepadState,
+    /// How far the stick is pushed in [0, 1] when the gait is asked to turn; a gait that stands sets off.
+    pub push: f32,
+    /// The node to set off from: the one of a full stick and free triggers.
+    pub start: NodeId,
+    /// True for a way to set off from another gait, which is of use for turns alone.
+    pub is_start: bool,
+}
+
+/// From standing with the stick pushed a little.
+const LIGHT_STICK: &str = "idle_light_stick";
+
+/// Name, node, and how far the stick is pushed while it settles and while it turns.
+type Entry = (&'static str, &'static str, f32, f32);
+
+const GAITS: [Entry; 9] = [
+    ("idle", "idle", 0.0, 1.0),
+    (LIGHT_STICK, "idle", 0.0, 0.3),
+    ("half_stick", "walk", 0.5, 0.5),
+    ("walk", "walk", 1.0, 1.0),
+    ("jog", "jog", 1.0, 1.0),
+    ("run", "run", 1.0, 1.0),
+    ("crouch", "crouch", 1.0, 1.0),
+    ("crawl", "crawl", 1.0, 1.0),
+    ("zombie_walk", "zombie_walk", 1.0, 1.0),
+];
+
+impl Gait {
+    /// The gaits that a pack has, all reached from the second node of the stick's path. Empty for a pack without one.
+    #[must_use]
+    pub fn all(pack: &CharacterPack) -> Vec<Gait> {
+        GAITS.iter().filter_map(|entry| Gait::of(pack, *entry)).collect()
+    }
+
+    /// The gait called `name`, if the pack has it.
+    #[must_use]
+    pub fn named(pack: &CharacterPack, name: &str) -> Option<Gait> {
+        Gait::all(pack).into_iter().find(|gait| gait.name == name)
+    }
+
+    fn of(pack: &CharacterPack, (name, node, push, turn_push): Entry) -> Option<Gait> {
+        let (graph, bindings) = (pack.graph(), Bindings::default());
+        let node = graph.node_named(node)?;
+        let nodes = |path: &str| Some(graph.path(graph.path_named(path)?).nodes());
+        let stick = nodes(&bindings.stick_path)?;
+        let mut pad = GamepadState { left_stick: [0.0, push], ..GamepadState::default() };
+        if let Some(index) = stick.iter().position(|n| *n == node) {
+            // The second node is a full stick's; the rest of the path is the faster control's.
+            press(&mut pad, bindings.faster, index as f32 - 1.0, stick.len() as f32 - 2.0);
+        } else {
+            let at_node = bindings.paths.iter().find_map(|binding| {
+                let nodes = nodes(&binding.path)?;
+                let index = nodes.iter().position(|n| *n == node)? as f32;
+                Some((binding.control, index - binding.first, nodes.len() as f32 - 1.0 - binding.first))
+            });
+            let (control, way, whole) = at_node?;
+            press(&mut pad, control, way, whole);
+        }
+        let is_start = name == LIGHT_STICK;
+        Some(Gait { name, pad, push: turn_push, start: *stick.get(1)?, is_start })
+    }
+
+    /// How far the stick is pushed while the gait settles, in [0, 1].
+    #[must_use]
+    pub fn settled_push(&self) -> f32 {
+        self.pad.left_stick[1]
+    }
+
+    /// True when the gait moves.
+    #[must_use]
+    pub fn moves(&self) -> bool {
+        self.settled_push() > 0.0
+    }
+}
+
+/// Presses a control for `way` of the `whole`.
+fn press(pad: &mut GamepadState, control: Control, way: f32, whole: f32) {
+    let value = if whole > 0.0 { (way / whole).clamp(0.0, 1.0) } else { 0.0 };
+    match control {
+        Control::LeftTrigger => pad.left_trigger = value,
+        Control::RightTrigger => pad.right_trigger = value,
+        Control::Button(button) if value > 0.0 => pad.buttons = Buttons::NONE.with(button),
+        Control::Button(_) | Control::None => {}
+    }
+}

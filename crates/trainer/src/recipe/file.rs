@@ -1,0 +1,173 @@
+//! The file of a recipe: TOML tables that are overlaid before they become a configuration.
+
+use std::path::Path;
+
+use serde::de::DeserializeOwned;
+use serde::{Deserialize, Serialize};
+use toml::{Table, Value};
+
+use super::{Phase, Recipe, RecipeError};
+use crate::storage::read_text_bounded;
+use crate::text::quoted;
+
+/// Largest file, bytes.
+const MOST_BYTES: u64 = 1 << 20;
+
+/// Folder of the characters' files, beside the recipes.
+const CHARACTERS: &str = "characters";
+
+/// A clip and how often it is drawn.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct ClipShare {
+    /// Name of the clip's file, without its ending.
+    pub name: String,
+    /// Its share among the clips of the recipe.
+    #[serde(default = "one")]
+    pub share: f32,
+    /// False to take the clip as it is, without its mirror image.
+    #[serde(default = "yes")]
+    pub mirror: bool,
+}
+
+fn yes() -> bool {
+    true
+}
+
+fn one() -> f32 {
+    1.0
+}
+
+/// A recipe as its file has it.
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct RecipeFile {
+    skill: String,
+    character: Option<String>,
+    parent: Option<String>,
+    #[serde(default)]
+    edge: bool,
+    #[serde(default)]
+    paths: Vec<Vec<String>>,
+    #[serde(default)]
+    halfway: Vec<[String; 2]>,
+    #[serde(default)]
+    clips: Vec<ClipShare>,
+    phases: Vec<PhaseFile>,
+    #[serde(default)]
+    environment: Table,
+    #[serde(default)]
+    ppo: Table,
+    #[serde(default)]
+    discriminator: Table,
+}
+
+/// A phase as its file has it.
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct PhaseFile {
+    samples: u64,
+    #[serde(default)]
+    environment: Table,
+    #[serde(default)]
+    ppo: Table,
+    #[serde(default)]
+    discriminator: Table,
+}
+
+/// What the recipes of one body share.
+#[derive(Default, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+struct CharacterFile {
+    environment: Table,
+    ppo: Table,
+    discriminator: Table,
+}
+
+/// Reads the text of a recipe's or a character's file.
+pub(super) fn read(path: &Path) -> Result<String, RecipeError> {
+    read_text_bounded(path, MOST_BYTES).map_err(|source| RecipeError::Io { path: path.to_owned(), source })
+}
+
+/// Parses a recipe and overlays its tables.
+pub(super) fn parse(path: &Path, text: &str) -> Result<Recipe, RecipeError> {
+    let recipe: RecipeFile = from_text(path, text)?;
+    let character = match &recipe.character {
+        Some(name) if is_plain(name) => {
+            let folder = path.parent().unwrap_or(Path::new(".")).join(CHARACTERS);
+            let path = folder.join(format!("{name}.toml"));
+            from_text(&path, &read(&path)?)?
+        }
+        Some(name) => {
+            let (field, expected) = ("character", "lower-case letters, digits and underscores");
+            return Err(RecipeError::Field { path: path.to_owned(), field, expected, found: quoted(name) });
+        }
+        None => CharacterFile::default(),
+    };
+    let layers = |of: fn(&CharacterFile) -> &Table, own: &Table| overlaid(of(&character), own);
+    let environment = layers(|c| &c.environment, &recipe.environment);
+    let ppo = layers(|c| &c.ppo, &recipe.ppo);
+    let discriminator = layers(|c| &c.discriminator, &recipe.discriminator);
+    let mut phases = Vec::with_capacity(recipe.phases.len());
+    for (index, phase) in recipe.phases.iter().enumerate() {
+        let at = |section: &str, own: &Table| {
+            if own.is_empty() { section.to_owned() } else { format!("phases[{index}].{section}") }
+        };
+        phases.push(Phase {
+            samples: phase.samples,
+            environment: section(
+                path,
+                &at("environment", &phase.environment),
+                &environment,
+                &phase.environment,
+            )?,
+            ppo: section(path, &at("ppo", &phase.ppo), &ppo, &phase.ppo)?,
+            discriminator: section(
+                path,
+                &at("discriminator", &phase.discriminator),
+                &discriminator,
+                &phase.discriminator,
+            )?,
+        });
+    }
+    let RecipeFile { skill, parent, edge, paths, halfway, clips, .. } = recipe;
+    Ok(Recipe { skill, parent, edge, paths, halfway, clips, phases })
+}
+
+/// True for lower-case letters, digits and underscores, at most 64: names that are safe as file names.
+#[must_use]
+pub fn is_plain(name: &str) -> bool {
+    let plain = |c: char| c.is_ascii_lowercase() || c.is_ascii_digit() || c == '_';
+    !name.is_empty() && name.len() <= 64 && name.chars().all(plain)
+}
+
+fn from_text<T: DeserializeOwned>(path: &Path, text: &str) -> Result<T, RecipeError> {
+    toml::from_str(text)
+        .map_err(|e| RecipeError::Toml { path: path.to_owned(), message: quoted(&e.to_string()) })
+}
+
+/// A section of the configuration with a phase's table over it.
+fn section<T: DeserializeOwned>(
+    path: &Path,
+    name: &str,
+    base: &Table,
+    over: &Table,
+) -> Result<T, RecipeError> {
+    T::deserialize(Value::Table(overlaid(base, over))).map_err(|e| RecipeError::Toml {
+        path: path.to_owned(),
+        message: format!("{name}: {}", quoted(e.message())),
+    })
+}
+
+/// The fields of `base` and `over`; where both have one, that of `over`. Tables are overlaid field by field.
+fn overlaid(base: &Table, over: &Table) -> Table {
+    let mut all = base.clone();
+    for (name, value) in over {
+        let merged = match (all.get(name), value) {
+            (Some(Value::Table(below)), Value::Table(above)) => Value::Table(overlaid(below, above)),
+            _ => value.clone(),
+        };
+        all.insert(name.clone(), merged);
+    }
+    all
+}

@@ -1,0 +1,239 @@
+//! Where recipes, runs, clips and kept checkpoints are, and how a run is made ready from them.
+
+use std::collections::BTreeMap;
+use std::path::{Path, PathBuf};
+
+use anyhow::{Context, Result, bail};
+use physics_bridge::Model;
+
+use crate::checkpoint::{ACTOR, Checkpoint, CheckpointError, EMA, PARENT_DISCRIMINATOR};
+use crate::clip::{ClipError, ClipFolder};
+use crate::env::{Demonstrations, Normalisers};
+use crate::recipe::Recipe;
+use crate::run::{CHECKPOINT, Existing, Loaded, METRICS, METRICS_FILE, Run, RunFolder, newest_checkpoint};
+use crate::training::Training;
+
+/// What a new run begins with.
+#[derive(Debug)]
+pub enum Start {
+    /// The networks of the recipe's parents, or random ones.
+    Parents,
+    /// The networks of this checkpoint, with no samples taken; its path is named in errors.
+    From((Checkpoint, PathBuf)),
+    /// The whole state of this checkpoint.
+    Continue((Checkpoint, PathBuf)),
+}
+
+/// Where everything a run reads and writes is.
+#[derive(Clone, Debug)]
+pub struct Workspace {
+    /// Folder of recipes.
+    pub recipes: PathBuf,
+    /// Folder of runs.
+    pub runs: PathBuf,
+    /// Folder of slim checkpoints that came with the project: what a run starts from when it has none of its own.
+    pub kept: PathBuf,
+    /// Folder of clips.
+    pub clips: ClipFolder,
+    /// The character.
+    pub model: Model,
+    /// The graph's normalisers.
+    pub normalisers: Normalisers,
+    /// Run to take parents from that were trained together, before any other; usually none.
+    pub parents: Option<String>,
+}
+
+impl Workspace {
+    /// The recipe of a skill.
+    ///
+    /// # Errors
+    /// When there is none or it can't be used.
+    pub fn recipe(&self, skill: &str) -> Result<Recipe> {
+        let path = self.recipes.join(format!("{skill}.toml"));
+        let recipe = Recipe::load(&path)?;
+        if recipe.skill != skill {
+            bail!("{}: expected the recipe of {skill}, found that of {}", path.display(), recipe.skill);
+        }
+        Ok(recipe)
+    }
+
+    /// All recipes of the folder, parents before children.
+    ///
+    /// # Errors
+    /// When a recipe can't be used, or a parent has none.
+    pub fn recipes_in_order(&self) -> Result<Vec<Recipe>> {
+        let mut left = BTreeMap::new();
+        let folder = std::fs::read_dir(&self.recipes)
+            .with_context(|| format!("cannot read {}", self.recipes.display()))?;
+        for entry in folder {
+            let path = entry?.path();
+            if path.extension().is_some_and(|e| e == "toml") {
+                let recipe = Recipe::load(&path)?;
+                left.insert(recipe.skill.clone(), recipe);
+            }
+        }
+        let mut ordered: Vec<Recipe> = Vec::new();
+        while !left.is_empty() {
+            let ready = |r: &Recipe| {
+                let hand_over =
+                    r.first().environment.reset.hand_over.iter().map(|hand_over| &hand_over.skill);
+                let mut needed = r.parent.iter().chain(r.paths.iter().flatten()).chain(hand_over);
+                needed.all(|p| ordered.iter().any(|o| o.skill == *p))
+            };
+            let Some(skill) = left.values().find(|r| ready(r)).map(|r| r.skill.clone()) else {
+                let names: Vec<_> = left.keys().cloned().collect();
+                bail!(
+                    "expected every parent to have a recipe, and no circle; found none for {}",
+                    names.join(", ")
+                );
+            };
+            ordered.extend(left.remove(&skill));
+        }
+        Ok(ordered)
+    }
+
+    /// Path of a skill's checkpoint.
+    #[must_use]
+    pub fn checkpoint(&self, skill: &str) -> PathBuf {
+        self.runs.join(skill).join(CHECKPOINT)
+    }
+
+    /// The newest checkpoint of a skill's run, else the kept one.
+    ///
+    /// # Errors
+    /// When a checkpoint is there and can't be read.
+    pub fn newest(&self, skill: &str) -> Result<Option<CheckpointFile>, CheckpointError> {
+        newest_or_kept(&self.runs, &self.kept, skill)
+    }
+
+    /// The clips of a recipe, ready to learn from.
+    ///
+    /// # Errors
+    /// When a clip is missing or wrong.
+    pub fn demonstrations(&self, recipe: &Recipe) -> Result<Demonstrations> {
+        self.clips_ready(recipe.clips.iter().map(|clip| (clip.name.as_str(), clip.share, clip.mirror)))
+    }
+
+    /// Clips by name, share and whether their mirror images count too, ready to learn from.
+    pub(crate) fn clips_ready<'a>(
+        &self,
+        named: impl Iterator<Item = (&'a str, f32, bool)>,
+    ) -> Result<Demonstrations> {
+        let clips = named.map(|(name, share, mirror)| Ok((self.clips.load(name)?, share, mirror)));
+        let clips = clips.collect::<Result<Vec<_>, ClipError>>()?;
+        Ok(Demonstrations::from_clips(&clips, &self.model, &self.normalisers.frame)?)
+    }
+
+    /// Makes the run of a recipe ready and locks its folder. With [`Existing::Resume`] it continues from its newest checkpoint,
+    /// or from the kept one; otherwise it starts anew.
+    ///
+    /// # Errors
+    /// As [`Workspace::prepare_named`].
+    pub fn prepare(&self, recipe: Recipe, seed: u64, existing: Existing) -> Result<Run> {
+        let name = recipe.skill.clone();
+        let kept = if existing == Existing::Resume { self.newest(&name)? } else { None };
+        let start = kept.map_or(Start::Parents, Start::Continue);
+        self.prepare_named(&name, recipe, seed, existing, start)
+    }
+
+    /// Makes a run of this name ready and locks its folder. With [`Existing::Resume`] and a run there it continues that; else
+    /// it begins as `start` says.
+    ///
+    /// # Errors
+    /// When a run is there and `existing` refuses it, another trainer holds the folder, or something that the run needs is
+    /// missing or wrong.
+    pub fn prepare_named(
+        &self,
+        name: &str,
+        recipe: Recipe,
+        seed: u64,
+        existing: Existing,
+        start: Start,
+    ) -> Result<Run> {
+        let text = toml::to_string(&recipe).context("cannot write the recipe")?;
+        let folder = RunFolder::open(self.runs.join(name), existing)?;
+        let own = if existing == Existing::Overwrite { None } else { folder.load()? };
+        let mut notes = Vec::new();
+        if let Some(holder) = folder.crashed() {
+            notes.push(format!("the last trainer here ended without finishing: {holder}"));
+        }
+        if let Some(Loaded { torn: Some(error), path, .. }) = &own {
+            notes.push(format!("{error}; continuing from {}", path.display()));
+        }
+        let earlier = match (own, start) {
+            (Some(Loaded { checkpoint, path, .. }), _) => Some((checkpoint, path)),
+            (None, Start::Continue(earlier)) => Some(earlier),
+            (None, Start::From((mut checkpoint, path))) => {
+                (checkpoint.progress.samples, checkpoint.progress.secs) = (0, 0.0);
+                Some((checkpoint, path))
+            }
+            (None, Start::Parents) => None,
+        };
+        // A resumed run must not meet the same episodes again.
+        let seed_now = seed.wrapping_add(earlier.as_ref().map_or(0, |(c, _)| c.progress.samples));
+        let parts = self.parts(&recipe, seed_now)?;
+        let mut training = Training::new(recipe, &self.model, self.normalisers.clone(), parts, seed_now);
+        if existing == Existing::Overwrite {
+            folder.clear()?;
+        }
+        if earlier.is_none() || !folder.path().join(METRICS_FILE).exists() {
+            folder.write("seed.txt", &format!("{seed}\n"))?;
+            folder.write(METRICS_FILE, &format!("{METRICS}\n"))?;
+        }
+        folder.write("recipe.toml", &text)?;
+        let secs = match earlier {
+            Some((checkpoint, path)) => restore(&mut training, &checkpoint, &path)?,
+            None => 0.0,
+        };
+        Ok(Run::new(training, folder, seed, secs, notes))
+    }
+}
+
+/// A checkpoint and its file.
+pub type CheckpointFile = (Checkpoint, PathBuf);
+
+/// The newest checkpoint of a skill's run in the folder `runs`, else the one in the folder `kept`.
+///
+/// # Errors
+/// When a checkpoint is there and can't be read.
+pub fn newest_or_kept(
+    runs: &Path,
+    kept: &Path,
+    skill: &str,
+) -> Result<Option<CheckpointFile>, CheckpointError> {
+    if let Some(Loaded { checkpoint, path, .. }) = newest_checkpoint(&runs.join(skill))? {
+        return Ok(Some((checkpoint, path)));
+    }
+    let kept = kept.join(format!("{skill}.safetensors"));
+    let loaded = kept.exists().then(|| Checkpoint::load(&kept)).transpose()?;
+    Ok(loaded.map(|checkpoint| (checkpoint, kept)))
+}
+
+/// Puts a checkpoint's networks into a training; returns the seconds spent before.
+fn restore(training: &mut Training, checkpoint: &Checkpoint, path: &Path) -> Result<f64> {
+    for (role, network, adam) in training.networks_mut() {
+        // Discriminators of a parent or half-way can be learned anew; a moving average begins where its policy is.
+        let actor = role.strip_suffix(EMA).map(|before| format!("{before}{ACTOR}"));
+        let known = checkpoint.networks.contains_key(&role);
+        if (role == PARENT_DISCRIMINATOR || role.contains('-')) && !known {
+            continue;
+        }
+        let trained = checkpoint.network(actor.filter(|_| !known).as_deref().unwrap_or(&role), path)?;
+        if trained.network.sizes() != network.sizes() {
+            bail!(
+                "{}: expected a {role} of sizes {:?}, found {:?}",
+                path.display(),
+                network.sizes(),
+                trained.network.sizes()
+            );
+        }
+        network.clone_from(&trained.network);
+        if let Some(adam) = adam {
+            adam.clone_from(&trained.adam);
+        }
+    }
+    training.samples = checkpoint.progress.samples;
+    training.learner.actors.iter_mut().for_each(|a| a.learning_rate = checkpoint.progress.learning_rate);
+    training.learner.rng = checkpoint.progress.rng;
+    Ok(checkpoint.progress.secs)
+}
