@@ -38,6 +38,7 @@ pub fn pack(model: &Model, mjcf: &str) -> CharacterPack {
         minimum_height: 0.0,
     };
     let skill = SkillEntry {
+        minimum_speed_mps: 0.0,
         name: "bow".into(),
         policy: "bow".into(),
         entry: vec!["rest".into(), "trot".into()],
