@@ -1,16 +1,13 @@
 //! One iteration of training: rollout, style, returns, gradient steps. The loop around it belongs to the program.
 
-use std::sync::Arc;
-
 use physics_bridge::{Model, ModelError};
+use policy_core::GraphPosition;
 use policy_core::training::ActionScaling;
-use policy_core::{BodyId, GraphPosition, Skeleton};
 
 use crate::amp::DiscriminatorReport;
 use crate::checkpoint::{ACTOR, CRITIC, DISCRIMINATOR, EMA, PARENT_DISCRIMINATOR};
 use crate::env::{
-    Demonstrations, EnvContext, EnvironmentConfig, EpisodeReport, GraphNode, HandOver, Normalisers,
-    RewardTerms, TerminationHeights, TrainingGraph, VecEnv,
+    EnvironmentConfig, EpisodeReport, GraphNode, Normalisers, RewardTerms, TrainingGraph, VecEnv,
 };
 use crate::nn::{Adam, Network};
 use crate::ppo::{Done, Learner, Rollout, UpdateReport};
