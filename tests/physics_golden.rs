@@ -7,14 +7,12 @@ use integration_tests::golden::{GoldenTick, golden_walk, largest_difference};
 use mujoco_rs::wrappers::mj_data::MjData;
 use mujoco_rs::wrappers::mj_model::MjModel;
 use physics_bridge::{Character, Model};
-use policy_core::{
-    ActionScaling, CharacterState, FRAME_LEN, JOINT_NAMES, JointTargets, OBSERVATION_LEN,
-    discriminator_frame_into, observe_into,
-};
+use policy_core::training::{ActionScaling, discriminator_frame_into};
+use policy_core::{CharacterState, JointTargets, Skeleton, observe_into};
 
 const TOLERANCE: f32 = 1e-5;
 
-/// The character with the solver of the recording, which stopped after four iterations; what ships goes on to the end.
+/// The character with the solver of the recording, which stopped after four iterations. The one that ships converges.
 fn recorded_mjcf() -> String {
     let (now, then) = (r#" iterations="20" ls_iterations="20""#, r#" iterations="4" ls_iterations="8""#);
     assert!(HUMANOID_MJCF.contains(now), "expected{now} in the model");
@@ -22,17 +20,11 @@ fn recorded_mjcf() -> String {
 }
 
 fn pose(character: &mut Character, tick: &GoldenTick) {
-    let qpos = tick.qpos.as_slice().try_into().unwrap();
-    let qvel = tick.qvel.as_slice().try_into().unwrap();
-    character.set_pose(qpos, qvel).unwrap();
+    character.set_pose(&tick.qpos, &tick.qvel).unwrap();
 }
 
 fn targets(tick: &GoldenTick) -> JointTargets {
-    let mut targets = JointTargets::default();
-    for (to, &from) in targets.0.iter_mut().zip(&tick.ctrl) {
-        *to = from as f32;
-    }
-    targets
+    tick.ctrl.iter().map(|&target| target as f32).collect::<Vec<_>>().into()
 }
 
 /// The largest difference between two lists of the same length.
@@ -43,10 +35,14 @@ fn furthest(a: &[f64], b: &[f64]) -> f64 {
 
 #[test]
 fn the_recording_is_in_our_order() {
-    let golden = golden_walk();
-    assert_eq!(golden.actuators, JOINT_NAMES);
-    assert_eq!(golden.joints_in_qpos_order, JOINT_NAMES);
-    assert_eq!(golden.bodies, policy_core::BODY_NAMES);
+    let (golden, model) = (golden_walk(), Model::from_mjcf(HUMANOID_MJCF).unwrap());
+    for skeleton in [&Skeleton::humanoid(), &**model.skeleton()] {
+        let joints: Vec<_> = skeleton.joints().iter().map(|joint| joint.name.as_str()).collect();
+        let bodies: Vec<_> = skeleton.bodies().iter().map(|body| body.name.as_str()).collect();
+        assert_eq!(golden.actuators, joints);
+        assert_eq!(golden.joints_in_qpos_order, joints);
+        assert_eq!(golden.bodies, bodies);
+    }
     assert_eq!(golden.ticks.len(), 60);
 }
 
@@ -54,13 +50,15 @@ fn the_recording_is_in_our_order() {
 fn every_tick_is_sensed_as_recorded() {
     let model = Model::from_mjcf(HUMANOID_MJCF).unwrap();
     let mut character = Character::new(&model);
-    let mut state = CharacterState::default();
-    let (mut observation, mut frame) = ([0.0; OBSERVATION_LEN], [0.0; FRAME_LEN]);
+    let skeleton = model.skeleton();
+    let mut state = CharacterState::new(skeleton);
+    let (mut observation, mut frame) =
+        (vec![0.0; skeleton.observation_len()], vec![0.0; skeleton.frame_len()]);
     for (index, tick) in golden_walk().ticks.iter().enumerate() {
         pose(&mut character, tick);
         character.sense_into(&mut state);
-        observe_into(&state, &mut observation);
-        discriminator_frame_into(&state, &mut frame);
+        observe_into(skeleton, &state, &mut observation);
+        discriminator_frame_into(skeleton, &state, &mut frame);
         let (at, difference) = largest_difference(&observation, &tick.observation);
         assert!(difference <= TOLERANCE, "tick {index}: observation[{at}] differs by {difference}");
         let (at, difference) = largest_difference(&frame, &tick.discriminator_frame);
@@ -70,19 +68,19 @@ fn every_tick_is_sensed_as_recorded() {
 
 #[test]
 fn every_action_becomes_the_recorded_targets() {
-    let (low, high) = Model::from_mjcf(HUMANOID_MJCF).unwrap().joint_limits();
-    let scaling = ActionScaling::from_joint_limits(low, high).unwrap();
-    let mut found = JointTargets::default();
+    let model = Model::from_mjcf(HUMANOID_MJCF).unwrap();
+    let scaling = ActionScaling::from_skeleton(model.skeleton());
+    let mut found = JointTargets::new(model.skeleton());
     for (index, tick) in golden_walk().ticks.iter().enumerate() {
-        scaling.targets_into(tick.action.as_slice().try_into().unwrap(), &mut found);
-        let (at, difference) = largest_difference(&found.0, &targets(tick).0);
+        scaling.targets_into(&tick.action, &mut found);
+        let (at, difference) = largest_difference(&found, &targets(tick));
         assert!(difference <= TOLERANCE, "tick {index}: ctrl[{at}] differs by {difference}");
     }
 }
 
-/// MuJoCo itself, fed the recorded joint targets in double precision, follows the recording: the character in
-/// `assets/` is the one that was recorded, but for the solver. On the machine of the recording not a bit differs; the tolerance is
-/// for the sines of other systems' libraries.
+/// MuJoCo itself follows the recording when it gets the recorded joint targets in double precision. So the character
+/// in `assets/` is the one that was recorded, except for its solver. On the machine of the recording not a bit differs;
+/// the tolerance is for the sines of other systems' libraries.
 #[test]
 fn bare_mujoco_repeats_the_recording() {
     let model = Arc::new(MjModel::from_xml_string(&recorded_mjcf()).unwrap());
@@ -100,8 +98,8 @@ fn bare_mujoco_repeats_the_recording() {
     }
 }
 
-/// A character gets its joint targets in single precision, so it leaves the recording by their rounding,
-/// which contacts magnify.
+/// A character gets its joint targets in single precision. It leaves the recording by their rounding, which contacts
+/// magnify.
 #[test]
 fn the_recorded_targets_reproduce_the_recorded_motion() {
     let model = Model::from_mjcf(&recorded_mjcf()).unwrap();

@@ -10,8 +10,8 @@ use std::time::Instant;
 
 use mujoco_rs::wrappers::mj_data::MjData;
 use mujoco_rs::wrappers::mj_model::MjModel;
-use physics_bridge::{CONTROL_HZ, Character, Crowd, Model, QPOS_LEN, QVEL_LEN};
-use policy_core::{DOF_COUNT, JointTargets};
+use physics_bridge::{CONTROL_HZ, Character, Crowd, Model, Pose};
+use policy_core::JointTargets;
 
 const HUMANOID: &str = include_str!("../../../assets/humanoid.xml");
 const GOLDEN: &str = include_str!("../../../tests/golden/golden_walk.json");
@@ -20,8 +20,7 @@ const ROUNDS: usize = 12;
 
 /// The recorded start and joint targets.
 struct Walk {
-    qpos: [f64; QPOS_LEN],
-    qvel: [f64; QVEL_LEN],
+    start: Pose,
     targets: Vec<JointTargets>,
 }
 
@@ -33,11 +32,10 @@ fn golden_walk() -> Walk {
     };
     let targets = |tick| {
         let ctrl = numbers(tick, "ctrl");
-        JointTargets(std::array::from_fn::<f32, DOF_COUNT, _>(|joint| ctrl[joint] as f32))
+        JointTargets::from(ctrl.iter().map(|&target| target as f32).collect::<Vec<_>>())
     };
     Walk {
-        qpos: numbers(0, "qpos").try_into().expect("35 numbers"),
-        qvel: numbers(0, "qvel").try_into().expect("34 numbers"),
+        start: Pose { qpos: numbers(0, "qpos"), qvel: numbers(0, "qvel") },
         targets: (0..ticks.len()).map(targets).collect(),
     }
 }
@@ -46,17 +44,18 @@ fn golden_walk() -> Walk {
 fn bare(walk: &Walk, shares: &mut [Vec<MjData<Arc<MjModel>>>]) -> f64 {
     for data in shares.iter_mut().flatten() {
         data.reset();
-        data.qpos_mut().copy_from_slice(&walk.qpos);
-        data.qvel_mut().copy_from_slice(&walk.qvel);
+        data.qpos_mut().copy_from_slice(&walk.start.qpos);
+        data.qvel_mut().copy_from_slice(&walk.start.qvel);
     }
     let start = Instant::now();
     std::thread::scope(|scope| {
         for share in shares {
             scope.spawn(|| {
                 for targets in &walk.targets {
-                    let ctrl = targets.0.map(f64::from);
                     for data in share.iter_mut() {
-                        data.ctrl_mut().copy_from_slice(&ctrl);
+                        for (to, &from) in data.ctrl_mut().iter_mut().zip(&**targets) {
+                            *to = from.into();
+                        }
                         (0..4).for_each(|_| data.step());
                     }
                 }
@@ -69,13 +68,13 @@ fn bare(walk: &Walk, shares: &mut [Vec<MjData<Arc<MjModel>>>]) -> f64 {
 /// Seconds that the crowd takes for the walk.
 fn crowd(walk: &Walk, crowd: &mut Crowd) -> f64 {
     for character in crowd.characters_mut() {
-        character.set_pose(&walk.qpos, &walk.qvel).expect("the recording is a pose");
+        character.set_pose(&walk.start.qpos, &walk.start.qvel).expect("the recording is a pose");
     }
     let start = Instant::now();
     for recorded in &walk.targets {
         let diverged = crowd.tick(|_, state, targets| {
             std::hint::black_box(state);
-            *targets = *recorded;
+            targets.copy_from_slice(recorded);
         });
         assert_eq!(diverged, 0, "the recording is stable");
     }

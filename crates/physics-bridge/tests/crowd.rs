@@ -4,7 +4,7 @@ mod common;
 
 use std::num::NonZeroUsize;
 
-use common::{hash, humanoid, wriggle};
+use common::{hash, humanoid, wriggle_into};
 use physics_bridge::{Cause, Character, Crowd};
 use policy_core::{CharacterState, Heading, JointTargets};
 
@@ -28,8 +28,8 @@ fn crowd(threads: usize) -> Crowd {
 
 /// A policy that depends on everything it is given.
 fn policy(index: usize, tick: u64, state: &CharacterState, targets: &mut JointTargets) {
-    *targets = wriggle(tick + index as u64);
-    targets.0[3] += 0.1 * state.bodies[2].position.x + 0.01 * state.joint_velocities[5];
+    wriggle_into(tick + index as u64, targets);
+    targets[3] += 0.1 * state.bodies[2].position.x + 0.01 * state.joint_velocities[5];
 }
 
 fn hashes(crowd: &Crowd) -> Vec<u64> {
@@ -50,10 +50,11 @@ fn threads_change_no_bit() {
     assert_eq!(one, run(2));
     assert_eq!(one, run(5));
     let mut alone = characters();
-    let mut state = CharacterState::default();
+    let skeleton = humanoid().skeleton().clone();
+    let mut state = CharacterState::new(&skeleton);
     for (index, character) in alone.iter_mut().enumerate() {
         for tick in 0..40 {
-            let mut targets = JointTargets::default();
+            let mut targets = JointTargets::new(&skeleton);
             character.sense_into(&mut state);
             policy(index, tick, &state, &mut targets);
             character.actuate(&targets);
@@ -66,9 +67,10 @@ fn threads_change_no_bit() {
 #[test]
 fn the_three_ways_to_tick_agree() {
     let (mut first, mut second, mut third) = (crowd(2), crowd(2), crowd(2));
+    let skeleton = humanoid().skeleton().clone();
     let mut ticks = vec![0; COUNT];
     let (mut states, mut all) =
-        (vec![CharacterState::default(); COUNT], vec![JointTargets::default(); COUNT]);
+        (vec![CharacterState::new(&skeleton); COUNT], vec![JointTargets::new(&skeleton); COUNT]);
     for tick in 0..20 {
         first.tick(|index, state, targets| policy(index, tick, state, targets));
         second.tick_with(&mut ticks, |index, tick, state, targets| {
@@ -90,7 +92,7 @@ fn one_that_diverges_leaves_the_others_alone() {
     let (mut crowd, mut other) = (crowd(2), crowd(2));
     let diverged = crowd.tick(|index, _, targets| {
         if index == 4 {
-            targets.0[0] = f32::NAN;
+            targets[0] = f32::NAN;
         }
     });
     assert_eq!(diverged, 1);

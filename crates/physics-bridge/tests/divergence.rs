@@ -2,21 +2,21 @@
 
 mod common;
 
-use common::{HUMANOID, hash, humanoid, run};
+use common::{HUMANOID, body, hash, humanoid, run};
 use glam::Vec3;
-use physics_bridge::{Cause, Character, Diverged, Dump, MAX_DEPTH_M, MAX_SPEED_MPS, Model, Settings};
-use policy_core::{Body, JOINT_NAMES, JointTargets};
+use physics_bridge::{Cause, Character, Diverged, MAX_DEPTH_M, MAX_SPEED_MPS, Model, ReplayFile, Settings};
+use policy_core::{BodyId, JointTargets};
 
 fn index(joint: &str) -> usize {
-    JOINT_NAMES.iter().position(|&name| name == joint).unwrap()
+    humanoid().skeleton().joint_named(joint).unwrap().index()
 }
 
 /// Steps once with a target that is not a number.
 fn nan_in_the_knee() -> (Character, Diverged, u64) {
     let mut character = Character::new(&humanoid());
     run(&mut character, 5);
-    let mut targets = JointTargets::default();
-    targets.0[index("left_knee")] = f32::NAN;
+    let mut targets = JointTargets::new(character.model().skeleton());
+    targets[index("left_knee")] = f32::NAN;
     character.actuate(&targets);
     let before = hash(&character);
     let error = character.step().unwrap_err();
@@ -37,7 +37,7 @@ fn too_fast() -> Character {
 fn a_target_that_is_no_number_is_named() {
     let (character, error, before) = nan_in_the_knee();
     assert_eq!(error.cause, Cause::BadControl);
-    assert_eq!((error.tick, error.substep, error.body), (5, 0, Some(Body::LeftShin)));
+    assert_eq!((error.tick, error.substep, error.body), (5, 0, Some(body(character.model(), "left_shin"))));
     let words = error.to_string();
     assert!(words.contains("tick 5") && words.contains("left_shin"), "{words}");
     assert_eq!(hash(&character), before, "the character is back where it was");
@@ -73,17 +73,17 @@ fn motion_that_is_too_fast_is_caught_again_and_again() {
 }
 
 #[test]
-fn the_dump_diverges_in_the_same_way() {
+fn the_replay_file_diverges_in_the_same_way() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("diverged.json");
     let (_, target, _) = nan_in_the_knee();
     for error in [target, too_fast().step().unwrap_err()] {
-        error.dump.save(&path).unwrap();
-        let mut replayed = Dump::load(&path).unwrap().to_character().unwrap();
+        error.replay.save(&path).unwrap();
+        let mut replayed = ReplayFile::load(&path).unwrap().to_character().unwrap();
         let again = replayed.step().unwrap_err();
         assert_eq!(again.cause, error.cause);
         assert_eq!((again.tick, again.substep, again.body), (error.tick, error.substep, error.body));
-        assert_eq!(again.dump.to_bytes(), error.dump.to_bytes());
+        assert_eq!(again.replay.to_bytes(), error.replay.to_bytes());
     }
 }
 
@@ -93,7 +93,8 @@ fn a_diverged_tick_is_not_recorded() {
     character.record_history(1.0);
     run(&mut character, 5);
     let newest = hash(&character);
-    character.actuate(&JointTargets([f32::INFINITY; 28]));
+    let targets = JointTargets::from(vec![f32::INFINITY; character.model().skeleton().joint_count()]);
+    character.actuate(&targets);
     character.step().unwrap_err();
     assert_eq!(character.history_len(), 6);
     character.rewind_to(0).unwrap();
@@ -130,7 +131,7 @@ fn motion_that_no_body_makes_is_a_divergence() {
         let words = error.to_string();
         assert!(words.contains("pelvis") && words.contains(&excess.limit.to_string()), "{words}");
         assert_eq!(hash(&character), before, "the character is back where it was");
-        let again = Dump::from_bytes(&error.dump.to_bytes()).unwrap().to_character().unwrap().step();
+        let again = ReplayFile::from_bytes(&error.replay.to_bytes()).unwrap().to_character().unwrap().step();
         assert_eq!(again.unwrap_err().cause, cause);
         character.stand_at(0.0, 0.0, policy_core::Heading::FORWARD, 0.0).unwrap();
         run(&mut character, 3);
@@ -156,11 +157,12 @@ fn falling_through_the_ground_is_a_divergence() {
 fn repeated_shoves_do_not_add_up() {
     for (force, every) in [(1200.0, 10), (1200.0, 1), (20_000.0, 3)] {
         let mut character = Character::new(&humanoid());
+        let (torso, bodies) = (body(character.model(), "torso"), character.model().skeleton().body_count());
         let mut diverged = 0;
         for tick in 0..1800 {
             if tick % every == 0 {
-                character.push(Body::Torso, Vec3::X * force, 0.2).unwrap();
-                assert!(character.is_pushed(Body::Torso));
+                character.push(torso, Vec3::X * force, 0.2).unwrap();
+                assert!(character.is_pushed(torso));
             }
             if character.step().is_err() {
                 diverged += 1;
@@ -168,7 +170,7 @@ fn repeated_shoves_do_not_add_up() {
                 let (x, y) = (pose.qpos[0] as f32, pose.qpos[1] as f32);
                 character.stand_at(x, y, policy_core::Heading::FORWARD, 0.0).unwrap();
             }
-            let speed = Body::ALL.map(|body| character.speed_of(body)).into_iter().fold(0.0, f32::max);
+            let speed = (0..bodies).map(|b| character.speed_of(BodyId::new(b))).fold(0.0, f32::max);
             assert!(speed <= MAX_SPEED_MPS, "{speed} m/s at tick {tick}");
         }
         assert!(diverged < 10 || force > 1200.0, "{diverged} divergences under {force} N");
@@ -184,11 +186,11 @@ fn a_push_drives_a_body_only_so_fast() {
         let mut pose = character.pose();
         pose.qpos[2] += 100.0;
         character.set_pose(&pose.qpos, &pose.qvel).unwrap();
-        character.push(Body::Pelvis, Vec3::X * force, 60.0).unwrap();
+        character.push(model.skeleton().root(), Vec3::X * force, 60.0).unwrap();
         for _ in 0..900 {
             character.step().unwrap();
         }
-        character.impulse(Body::Pelvis, Vec3::X * 1000.0).unwrap();
+        character.impulse(model.skeleton().root(), Vec3::X * 1000.0).unwrap();
         character.step().unwrap();
         character.centre_of_mass_velocity().x
     });

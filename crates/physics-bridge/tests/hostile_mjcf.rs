@@ -1,9 +1,11 @@
-//! MJCF that is malformed, or not the humanoid, is refused with an error that says where and why.
+//! MJCF that is malformed, hostile or no character is refused with an error that says where and why.
 
 mod common;
 
 use common::HUMANOID;
 use physics_bridge::Model;
+use policy_core::Skeleton;
+use policy_core::training::{Roles, SkeletonBody, SkeletonJoint};
 
 /// The error for the humanoid with one text replaced.
 fn refused(from: &str, to: &str) -> String {
@@ -62,43 +64,67 @@ fn errors_name_the_file() {
 }
 
 #[test]
-fn what_is_not_the_humanoid_is_refused_by_name() {
-    assert_says(&Model::from_mjcf("<mujoco/>").unwrap_err().to_string(), &["35", "qpos", "found 0"]);
-    assert_says(&refused("body name=\"left_hand\"", "body name=\"left_paw\""), &["body", "left_hand"]);
+fn what_is_no_character_is_refused_by_name() {
     assert_says(
-        &refused("<joint name=\"neck_x\"", "<joint name=\"throat_x\"").replace("throat", "neck"),
-        &["neck_x"],
+        &Model::from_mjcf("<mujoco/>").unwrap_err().to_string(),
+        &["one body with a free joint", "0"],
     );
+    assert_says(&refused("body name=\"left_hand\"", "body"), &["name", "body number 9"]);
     assert_says(
         &refused("<position name=\"neck_x\" joint=\"neck_x\"", "<position name=\"neck_x\" joint=\"neck_y\""),
-        &["actuator", "neck_x", "joint"],
+        &["unique", "neck_y"],
     );
+    let neck = "<position name=\"neck_x\" joint=\"neck_x\" class=\"neck\" inheritrange=\"0\" ctrllimited=\"false\"/>";
+    for (motor, word) in [
+        ("<motor name='neck_x' joint='neck_x' forcerange='-50 50'/>", "position servo"),
+        ("<position joint='neck_x' kp='50' kv='5' forcerange='-50 50'/>", "kv"),
+        ("<position joint='neck_x' class='neck' gear='2'/>", "gear"),
+        ("<position joint='neck_x' kp='50' forcerange='-50 70'/>", "forcerange"),
+        ("<position joint='neck_x' kp='50' forcelimited='false'/>", "forcerange"),
+    ] {
+        assert_says(&refused(neck, motor), &["neck_x", word]);
+    }
+    assert_says(&refused(neck, ""), &["qpos", "34", "35"]);
+    let ankle = "name=\"left_ankle_z\" axis=\"0 0 1\"";
     assert_says(
-        &refused(
-            "<position name=\"neck_x\" joint=\"neck_x\" class=\"neck\" inheritrange=\"0\" ctrllimited=\"false\"/>",
-            "<motor name=\"neck_x\" joint=\"neck_x\"/>",
-        ),
-        &["actuator", "neck_x", "servo"],
-    );
-    assert_says(
-        &refused(
-            "name=\"left_ankle_z\" axis=\"0 0 1\"",
-            "name=\"left_ankle_z\" type=\"slide\" axis=\"0 0 1\"",
-        ),
+        &refused(ankle, "name=\"left_ankle_z\" type=\"slide\" axis=\"0 0 1\""),
         &["joint", "left_ankle_z", "hinge"],
     );
     assert_says(
-        &refused(
-            "name=\"left_ankle_z\" axis=\"0 0 1\"",
-            "name=\"left_ankle_z\" limited=\"false\" axis=\"0 0 1\"",
-        ),
+        &refused(ankle, "name=\"left_ankle_z\" limited=\"false\" axis=\"0 0 1\""),
         &["joint", "left_ankle_z", "limited"],
     );
     assert_says(
         &refused("<light", "<body name=\"ball\"><freejoint/><geom size=\".1\"/></body><light"),
-        &["35", "qpos", "42"],
+        &["one body with a free joint", "2"],
     );
-    assert_says(&refused("<freejoint name=\"root\"/>", ""), &["35", "qpos", "28"]);
+    assert_says(&refused("<freejoint name=\"root\"/>", ""), &["qpos", "28", "35"]);
+}
+
+#[test]
+fn what_is_not_the_given_skeleton_is_refused_by_name() {
+    let given = |from: &str, to: &str| {
+        assert!(HUMANOID.contains(from), "the MJCF has no {from:?}");
+        let error = Model::from_mjcf_with_skeleton(&HUMANOID.replacen(from, to, 1), Skeleton::humanoid());
+        error.unwrap_err().to_string()
+    };
+    Model::from_mjcf_with_skeleton(HUMANOID, Skeleton::humanoid()).unwrap();
+    assert_says(&given("body name=\"left_hand\"", "body name=\"left_paw\""), &["body", "left_hand"]);
+    assert_says(
+        &given("axis=\"0 0 1\" range=\"-45 45\"", "axis=\"0 0 1\" range=\"-45 55\""),
+        &["neck_z", "range"],
+    );
+    assert_says(
+        &given("axis=\"0 0 1\" range=\"-45 45\"", "axis=\"0 1 1\" range=\"-45 45\""),
+        &["neck_z", "axis"],
+    );
+    let quadruped = Model::from_mjcf_with_skeleton(common::QUADRUPED, Skeleton::humanoid());
+    assert_says(&quadruped.unwrap_err().to_string(), &["15 bodies", "14"]);
+    let nul = |name: &str| SkeletonBody { name: name.into(), parent: None };
+    let body = |index: usize| policy_core::BodyId::new(index);
+    let joint = SkeletonJoint { name: "a\0b".into(), body: body(0), axis: glam::Vec3::X, range: [0.0, 1.0] };
+    let skeleton = Skeleton::from_parts(vec![nul("a\0b")], vec![joint], Roles::default()).unwrap();
+    assert!(Model::from_mjcf_with_skeleton(HUMANOID, skeleton).is_err());
 }
 
 #[test]

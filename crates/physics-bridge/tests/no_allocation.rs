@@ -4,12 +4,13 @@ mod common;
 
 use std::alloc::{GlobalAlloc, Layout, System};
 use std::num::NonZeroUsize;
+use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
 
-use common::{humanoid, wriggle};
+use common::{body, humanoid, made_up_pack, quadruped, wriggle_into};
 use glam::Vec3;
 use physics_bridge::{BodyPoses, Character, Crowd, HISTORY_SECS, Terrain};
-use policy_core::{Body, CharacterState};
+use policy_core::{CharacterState, Command, Controller, Goal, JointTargets, NodeId};
 
 struct Counting;
 
@@ -42,25 +43,52 @@ fn allocations(work: impl FnOnce()) -> u64 {
 fn ticks_allocate_nothing() {
     assert!(allocations(|| drop(std::hint::black_box(vec![0u8; 100]))) > 0, "the counter counts");
     a_character_allocates_nothing();
+    control_ticks_allocate_nothing();
     a_crowd_allocates_no_more_with_more_characters();
+}
+
+/// The first tick of a crowd makes room for its batches; the thread pool takes a block now and then.
+fn control_ticks_allocate_nothing() {
+    const TICKS: u64 = 64;
+    let model = quadruped();
+    let pack = Arc::new(made_up_pack(model.skeleton(), None, model.actuation()));
+    let (mut character, mut controller) = (Character::new(&model), Controller::new(pack.clone()));
+    let command = Command { goal: Goal::Node(NodeId::new(2)), ..Command::default() };
+    let count = allocations(|| {
+        (0..TICKS).for_each(|_| character.control_tick(&mut controller, &command, 1.0 / 30.0).unwrap());
+    });
+    assert_eq!(count, 0);
+    let characters = (0..50).map(|_| Character::new(&model)).collect();
+    let mut crowd = Crowd::new(characters, NonZeroUsize::new(2)).unwrap();
+    let (mut controllers, commands) = (vec![Controller::new(pack); 50], [command; 50]);
+    let mut run = |ticks: u64| {
+        (0..ticks).for_each(|_| assert_eq!(crowd.control_tick(&mut controllers, &commands, 1.0 / 30.0), 0));
+    };
+    run(4);
+    let found = allocations(|| run(TICKS));
+    assert!(found <= TICKS / 8, "{found} allocations in {TICKS} ticks of a crowd");
 }
 
 fn a_character_allocates_nothing() {
     let terrain = Terrain::Steps { rise_m: 0.1, run_m: 0.5, count: 4 };
-    for model in [humanoid(), humanoid().with_terrain(terrain).unwrap()] {
+    for model in [humanoid(), humanoid().with_terrain(terrain).unwrap(), quadruped()] {
         let mut character = Character::new(&model);
         character.record_history(HISTORY_SECS);
         let (mut state, mut poses, mut saved) =
-            (CharacterState::default(), BodyPoses::default(), character.save());
+            (CharacterState::new(model.skeleton()), BodyPoses::new(model.skeleton()), character.save());
+        let (mut pose, mut targets) = (character.pose(), JointTargets::new(model.skeleton()));
+        let pushed = body(&model, model.skeleton().bodies()[1].name.as_str());
         let count = allocations(|| {
             for tick in 0..100 {
                 character.sense_into(&mut state);
-                character.actuate(&wriggle(tick));
+                wriggle_into(tick, &mut targets);
+                character.actuate(&targets);
                 if tick % 10 == 0 {
-                    character.push(Body::Torso, Vec3::X * 50.0, 0.1).unwrap();
+                    character.push(pushed, Vec3::X * 50.0, 0.1).unwrap();
                 }
                 character.step().unwrap();
                 character.poses_into(&mut poses);
+                character.pose_into(&mut pose);
                 character.save_into(&mut saved);
                 std::hint::black_box((character.contacts(), character.clearance()));
             }
@@ -82,7 +110,7 @@ fn a_crowd_allocates_no_more_with_more_characters() {
         let mut run = |times: u64| {
             for _ in 0..times {
                 crowd.tick_with(&mut ticks, |_, tick, _, targets| {
-                    *targets = wriggle(*tick);
+                    wriggle_into(*tick, targets);
                     *tick += 1;
                 });
             }

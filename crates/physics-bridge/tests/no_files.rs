@@ -15,7 +15,7 @@ fn warnings_and_errors_leave_no_file() {
     assert!(Model::from_mjcf(&HUMANOID.replace("hinge", "henge")).is_err());
     let mut character = Character::new(&humanoid());
     for _ in 0..3 {
-        character.actuate(&JointTargets([f32::NAN; 28]));
+        character.actuate(&JointTargets::from(vec![f32::NAN; 28]));
         assert!(character.step().is_err());
         let mut pose = character.pose();
         pose.qvel[10] = 1e9;

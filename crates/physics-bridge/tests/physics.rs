@@ -2,12 +2,12 @@
 
 mod common;
 
-use common::{humanoid, run, wriggle};
+use common::{body, humanoid, run, wriggle};
 use glam::Vec3;
 use mujoco_rs::wrappers::mj_data::MjData;
 use mujoco_rs::wrappers::mj_model::MjModel;
-use physics_bridge::{BodyPoses, Character, Model, QVEL_LEN, Settings};
-use policy_core::{Body, CharacterState, Heading};
+use physics_bridge::{BodyPoses, Character, Model, Settings};
+use policy_core::{CharacterState, Heading};
 
 const G: f32 = 9.81;
 const TICK_SECS: f32 = 1.0 / 30.0;
@@ -34,8 +34,8 @@ fn stepping_is_mujocos_own_step_bit_for_bit() {
     let mut character = Character::new(&humanoid());
     bare.qpos_mut().copy_from_slice(&character.pose().qpos);
     for tick in 0..90 {
-        let targets = wriggle(tick);
-        for (to, from) in bare.ctrl_mut().iter_mut().zip(targets.0) {
+        let targets = wriggle(character.model().skeleton(), tick);
+        for (to, &from) in bare.ctrl_mut().iter_mut().zip(&*targets) {
             *to = from.into();
         }
         (0..4).for_each(|_| bare.step());
@@ -60,7 +60,7 @@ fn the_ground_carries_the_weight() {
     let weight = model.mass_kg() as f32 * G;
     assert!((total.z - weight).abs() < 0.1 * weight, "{total} newtons for {weight}");
     for contact in character.contacts() {
-        assert!(matches!(contact.body, Body::LeftFoot | Body::RightFoot), "{contact:?}");
+        assert!(model.skeleton().feet().contains(&contact.body), "{contact:?}");
         assert_eq!(contact.other, None);
         assert!((contact.normal - Vec3::Z).length() < 1e-6 && contact.position.z.abs() < 0.01, "{contact:?}");
     }
@@ -85,8 +85,8 @@ fn free_fall_gains_g() {
 fn an_impulse_changes_momentum_by_itself() {
     let model = with(|s| s.gravity = 0.0);
     let mut character = afloat(&model);
-    character.impulse(Body::Torso, Vec3::new(10.0, 0.0, 0.0)).unwrap();
-    character.impulse(Body::Torso, Vec3::new(10.0, 5.0, 0.0)).unwrap();
+    character.impulse(body(&model, "torso"), Vec3::new(10.0, 0.0, 0.0)).unwrap();
+    character.impulse(body(&model, "torso"), Vec3::new(10.0, 5.0, 0.0)).unwrap();
     for tick in 0..3 {
         character.step().unwrap();
         let momentum = character.centre_of_mass_velocity() * model.mass_kg() as f32;
@@ -98,7 +98,7 @@ fn an_impulse_changes_momentum_by_itself() {
 fn a_push_lasts_as_long_as_it_says() {
     let model = with(|s| s.gravity = 0.0);
     let mut character = afloat(&model);
-    character.push(Body::Pelvis, Vec3::new(0.0, 100.0, 0.0), 0.2).unwrap();
+    character.push(body(&model, "pelvis"), Vec3::new(0.0, 100.0, 0.0), 0.2).unwrap();
     for tick in 1..=9 {
         character.step().unwrap();
         let momentum = character.centre_of_mass_velocity() * model.mass_kg() as f32;
@@ -110,11 +110,11 @@ fn a_push_lasts_as_long_as_it_says() {
 #[test]
 fn pushes_that_are_no_numbers_are_refused() {
     let mut character = Character::new(&humanoid());
-    let before = common::hash(&character);
-    assert!(character.push(Body::Head, Vec3::NAN, 0.1).is_err());
-    assert!(character.push(Body::Head, Vec3::X, -0.1).is_err());
-    assert!(character.push(Body::Head, Vec3::X, f32::INFINITY).is_err());
-    let error = character.impulse(Body::Head, Vec3::X * 1e9).unwrap_err().to_string();
+    let (before, head) = (common::hash(&character), body(character.model(), "head"));
+    assert!(character.push(head, Vec3::NAN, 0.1).is_err());
+    assert!(character.push(head, Vec3::X, -0.1).is_err());
+    assert!(character.push(head, Vec3::X, f32::INFINITY).is_err());
+    let error = character.impulse(head, Vec3::X * 1e9).unwrap_err().to_string();
     assert!(error.contains("an impulse") && error.contains("1000000"), "{error}");
     assert_eq!(before, common::hash(&character));
 }
@@ -123,10 +123,10 @@ fn pushes_that_are_no_numbers_are_refused() {
 fn slides(model: &Model) -> f32 {
     let mut character = Character::new(model);
     character.stand_at(0.0, 0.0, Heading::FORWARD, 1.0).unwrap();
-    let mut poses = BodyPoses::default();
+    let mut poses = BodyPoses::new(model.skeleton());
     (0..9).for_each(|_| character.step().unwrap());
     character.poses_into(&mut poses);
-    poses.positions[Body::LeftFoot.index()].x
+    poses.positions[body(model, "left_foot").index()].x
 }
 
 #[test]
@@ -196,19 +196,22 @@ fn settings_out_of_range_are_refused() {
 #[test]
 fn standing_touches_the_ground_and_faces_the_heading() {
     let mut character = Character::new(&humanoid());
-    let mut state = CharacterState::default();
+    let mut state = CharacterState::new(character.model().skeleton());
     for (x, y, angle) in [(0.0, 0.0, 0.0), (3.0, -7.5, 2.0), (-100.0, 40.0, -3.0)] {
         character.stand_at(x, y, Heading::from_angle(angle), 0.5).unwrap();
         assert!(character.clearance().abs() < 1e-5, "{}", character.clearance());
         character.sense_into(&mut state);
-        let pelvis = state.body(Body::Pelvis);
+        let pelvis = state.root();
         let heading = Heading::from_rotation(pelvis.rotation);
         assert!((heading.direction() - Heading::from_angle(angle).direction()).length() < 1e-5);
         assert!((pelvis.linear_velocity.truncate() - heading.direction() * 0.5).length() < 1e-5);
         assert!((pelvis.position.truncate() - glam::Vec2::new(x, y)).length() < 1e-5);
         (0..20).for_each(|_| character.step().unwrap());
         character.sense_into(&mut state);
-        assert!(state.body(Body::Head).position.z > 1.0, "fell from {x}, {y}");
+        assert!(
+            state.body(character.model().skeleton().head().unwrap()).position.z > 1.0,
+            "fell from {x}, {y}"
+        );
     }
 }
 
@@ -217,14 +220,16 @@ fn poses_that_are_none_are_refused_and_change_nothing() {
     let mut character = Character::new(&humanoid());
     run(&mut character, 3);
     let (before, pose) = (common::hash(&character), character.pose());
-    let mut qpos = pose.qpos;
+    let mut qpos = pose.qpos.clone();
     qpos[20] = f64::NAN;
     let error = character.set_pose(&qpos, &pose.qvel).unwrap_err().to_string();
     assert!(error.contains("qpos[20]"), "{error}");
-    let mut qvel = [0.0; QVEL_LEN];
+    let error = character.set_pose(&qpos[..34], &pose.qvel).unwrap_err().to_string();
+    assert!(error.contains("35") && error.contains("qpos") && error.contains("34"), "{error}");
+    let mut qvel = vec![0.0; pose.qvel.len()];
     qvel[0] = f64::INFINITY;
     assert!(character.set_pose(&pose.qpos, &qvel).unwrap_err().to_string().contains("qvel[0]"));
-    qpos = pose.qpos;
+    qpos.clone_from(&pose.qpos);
     qpos[3..7].fill(0.0);
     assert!(character.set_pose(&qpos, &pose.qvel).unwrap_err().to_string().contains("quaternion"));
     assert!(character.stand_at(f32::NAN, 0.0, Heading::FORWARD, 0.0).is_err());
@@ -236,12 +241,13 @@ fn poses_that_are_none_are_refused_and_change_nothing() {
 fn sensed_velocities_are_derivatives() {
     let mut character = afloat(&humanoid());
     run(&mut character, 4);
-    let (mut state, mut later) = (CharacterState::default(), CharacterState::default());
+    let mut state = CharacterState::new(character.model().skeleton());
+    let mut later = state.clone();
     character.sense_into(&mut state);
     let pose = character.pose();
     // Move along the velocity for a moment, by hand.
     let moment = 1e-3;
-    let mut qpos = pose.qpos;
+    let mut qpos = pose.qpos.clone();
     (0..3).for_each(|i| qpos[i] += moment * pose.qvel[i]);
     let [w, x, y, z] = [qpos[3], qpos[4], qpos[5], qpos[6]];
     let turn = glam::DVec3::new(pose.qvel[3], pose.qvel[4], pose.qvel[5]) * moment;
@@ -277,7 +283,7 @@ fn the_solver_brings_every_step_to_its_end() {
         if tick % 60 == 0 {
             character.stand_at(0.0, 0.0, Heading::FORWARD, 1.5).unwrap();
         }
-        let (before, targets) = (character.pose(), wriggle(tick));
+        let (before, targets) = (character.pose(), wriggle(character.model().skeleton(), tick));
         patient.set_pose(&before.qpos, &before.qvel).unwrap();
         for each in [&mut character, &mut patient] {
             each.actuate(&targets);

@@ -1,19 +1,19 @@
-//! Saving, restoring, going back, dumps: all bit for bit.
+//! Saving, restoring, rewinding, replay files: all bit for bit.
 
 mod common;
 
-use common::{hash, humanoid, run};
+use common::{body, hash, humanoid, run};
 use glam::Vec3;
-use physics_bridge::{Character, Dump, HISTORY_SECS, Settings, Terrain};
-use policy_core::{Body, Heading};
+use physics_bridge::{Character, HISTORY_SECS, ReplayFile, Settings, Terrain};
+use policy_core::Heading;
 
 /// A character in the middle of a fall, under a push, with everything that a state can hold.
 fn busy() -> Character {
     let mut character = Character::new(&humanoid());
     run(&mut character, 20);
-    character.push(Body::Torso, Vec3::new(80.0, -30.0, 5.0), 0.5).unwrap();
+    character.push(body(character.model(), "torso"), Vec3::new(80.0, -30.0, 5.0), 0.5).unwrap();
     run(&mut character, 2);
-    character.impulse(Body::Head, Vec3::new(0.0, 3.0, 0.0)).unwrap();
+    character.impulse(body(character.model(), "head"), Vec3::new(0.0, 3.0, 0.0)).unwrap();
     character
 }
 
@@ -103,21 +103,21 @@ fn the_same_run_gives_the_same_hash() {
 }
 
 #[test]
-fn a_dump_goes_through_a_file_bit_for_bit() {
+fn a_replay_file_continues_bit_for_bit() {
     let terrain = Terrain::Wavy { height_m: 0.2, wavelength_m: 3.0, seed: 5 };
     let settings = Settings { gravity: 0.9, friction: 0.7, strength: 1.1, mass: 0.9 };
     let model = humanoid().with_terrain(terrain).unwrap().with_settings(settings).unwrap();
     let mut character = Character::new(&model);
     run(&mut character, 20);
-    character.push(Body::Torso, Vec3::new(80.0, -30.1, 5.0), 0.5).unwrap();
+    character.push(body(character.model(), "torso"), Vec3::new(80.0, -30.1, 5.0), 0.5).unwrap();
     run(&mut character, 3);
 
     let folder = tempfile::tempdir().unwrap();
-    let path = folder.path().join("dump.json");
-    character.dump().save(&path).unwrap();
-    let dump = Dump::load(&path).unwrap();
-    assert_eq!(dump, character.dump());
-    let mut replayed = dump.to_character().unwrap();
+    let path = folder.path().join("replay.json");
+    character.replay_file().save(&path).unwrap();
+    let replay = ReplayFile::load(&path).unwrap();
+    assert_eq!(replay, character.replay_file());
+    let mut replayed = replay.to_character().unwrap();
     assert_eq!((replayed.model().terrain(), replayed.model().settings()), (terrain, settings));
     for _ in 0..40 {
         run(&mut character, 1);
@@ -126,18 +126,18 @@ fn a_dump_goes_through_a_file_bit_for_bit() {
     }
 }
 
-/// The error for a dump with one text replaced.
+/// The error for a replay file with one text replaced.
 fn refused(from: &str, to: &str) -> String {
-    let text = String::from_utf8(busy().dump().to_bytes()).unwrap();
-    assert!(text.contains(from), "the dump has no {from:?}");
-    let result = Dump::from_bytes(text.replacen(from, to, 1).as_bytes()).and_then(|d| d.to_character());
+    let text = String::from_utf8(busy().replay_file().to_bytes()).unwrap();
+    assert!(text.contains(from), "the file has no {from:?}");
+    let result = ReplayFile::from_bytes(text.replacen(from, to, 1).as_bytes()).and_then(|d| d.to_character());
     result.unwrap_err().to_string()
 }
 
 #[test]
-fn dumps_that_are_none_are_refused() {
-    assert!(refused("\"version\": 1", "\"version\": 2").contains("version 2"));
-    assert!(refused("policy-space physics dump", "poem").contains("poem"));
+fn replay_files_that_are_none_are_refused() {
+    assert!(refused("\"version\": 2", "\"version\": 3").contains("version 3"));
+    assert!(refused("policy-space replay", "poem").contains("poem"));
     assert!(refused("\"tick\": 22", "\"tick\": 22, \"tock\": 1").contains("tock"));
     assert!(
         refused(
@@ -151,13 +151,16 @@ fn dumps_that_are_none_are_refused() {
     assert!(refused("\"state\": \"", "\"state\": \"7ff8000000000000").contains("number 0"));
     assert!(refused("\"state\": \"", "\"state\": \"0000000000000000").contains("found"));
     assert!(refused("80.0,", "1e30,").contains("pushes"));
+    assert!(refused("\"control_hz\": 30.0", "\"control_hz\": 0.0").contains("control_hz"));
+    assert!(refused("\"parent\": \"torso\"", "\"parent\": \"tail\"").contains("tail"));
+    assert!(refused("\"name\": \"head\"", "\"name\": \"torso\"").contains("head"));
     assert!(refused("<mujoco ", "<mujaco ").contains("model"));
 }
 
 #[test]
-fn every_truncated_dump_is_refused() {
-    let bytes = busy().dump().to_bytes();
+fn every_truncated_replay_file_is_refused() {
+    let bytes = busy().replay_file().to_bytes();
     for length in (0..bytes.len()).step_by(211) {
-        assert!(Dump::from_bytes(&bytes[..length]).is_err(), "cut off after {length} bytes");
+        assert!(ReplayFile::from_bytes(&bytes[..length]).is_err(), "cut off after {length} bytes");
     }
 }

@@ -129,7 +129,7 @@ impl Blend {
             return policies[policy.index()].evaluate_into(arithmetic, input, scratch, out);
         }
         first.assert_lengths(input, out);
-        let MlpScratch { front, back } = scratch;
+        let MlpScratch { front, back, .. } = scratch;
         let mut x = input;
         let last = first.layers().len() - 1;
         for (i, shape) in first.layers().iter().enumerate() {
@@ -166,12 +166,9 @@ impl Blend {
                 first = false;
             }
             if first {
-                scale_rows(
-                    0.0,
-                    &policies[self.terms()[0].policy.index()].layers()[i].weight,
-                    &mut layer.weight,
-                );
-                scale_rows(0.0, &policies[self.terms()[0].policy.index()].layers()[i].bias, &mut layer.bias);
+                let shape = &policies[self.terms()[0].policy.index()].layers()[i];
+                scale_rows(0.0, &shape.weight, &mut layer.weight);
+                scale_rows(0.0, &shape.bias, &mut layer.bias);
             }
         }
     }
@@ -193,8 +190,8 @@ impl Blend {
         if let Some(policy) = self.as_single() {
             return policies[policy.index()].evaluate_into(arithmetic, input, scratch, out);
         }
-        let mut action = [0.0; 64];
-        let action = &mut action[..out.len()];
+        let mut outputs = core::mem::take(&mut scratch.outputs);
+        let action = &mut outputs[..out.len()];
         out.fill(0.0);
         for (policy, weight) in self.active(last) {
             policies[policy.index()].evaluate_into(arithmetic, input, scratch, action);
@@ -202,5 +199,6 @@ impl Blend {
                 *sum += weight * a;
             }
         }
+        scratch.outputs = outputs;
     }
 }

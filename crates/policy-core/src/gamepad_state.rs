@@ -1,8 +1,10 @@
 //! The plain state of a gamepad: the contract between whatever reads devices (or keys, or a script)
 //! and the command mapping.
 
+use serde::{Deserialize, Serialize};
+
 /// Buttons of a gamepad, named by place so that no maker's letters matter.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[repr(u8)]
 #[expect(missing_docs, reason = "the names say it all")]
 pub enum Button {

@@ -257,7 +257,7 @@ impl Mlp {
         out: &mut [f32],
     ) {
         self.assert_lengths(input, out);
-        let MlpScratch { front, back } = scratch;
+        let MlpScratch { front, back, .. } = scratch;
         let mut x = input;
         for (i, layer) in self.layers.iter().enumerate() {
             let y = &mut front[..layer.padded_outputs()];
@@ -282,6 +282,8 @@ impl Mlp {
 pub struct MlpScratch {
     pub(crate) front: Vec<f32>,
     pub(crate) back: Vec<f32>,
+    /// Outputs of one policy of several.
+    pub(crate) outputs: Vec<f32>,
 }
 
 impl MlpScratch {
@@ -289,6 +291,7 @@ impl MlpScratch {
     #[must_use]
     pub fn for_mlp(mlp: &Mlp) -> Self {
         let width = mlp.layers.iter().map(Layer::padded_outputs).max().unwrap_or(0);
-        Self { front: alloc::vec![0.0; width], back: alloc::vec![0.0; width] }
+        let zeros = || alloc::vec![0.0; width];
+        Self { front: zeros(), back: zeros(), outputs: zeros() }
     }
 }

@@ -190,3 +190,22 @@ fn blended_actions_are_the_sum_of_the_policies_actions() {
         assert!((out[i] - (0.75 * a[i] + 0.25 * b[i])).abs() < 1e-6);
     }
 }
+
+#[test]
+fn wide_policies_blend_their_actions_too() {
+    let policies = [1, 2].map(|seed| mlp(&[20, 16, 200], seed));
+    let input = Noise(4).numbers(20, 1.0);
+    let mut evaluator = BlendEvaluator::new(&policies[0], Arithmetic::Reproducible, false);
+    let mut out = vec![0.0; 200];
+    let blend = Blend::between(p(0), p(1), 0.5);
+    for _ in 0..2 {
+        let kind = evaluator.evaluate_into(&policies, &blend, BlendMode::Actions, &input, &mut out);
+        assert_eq!(kind, Evaluation::Actions);
+    }
+    let mut scratch = MlpScratch::for_mlp(&policies[0]);
+    let mut actions = [0, 1].map(|_| vec![0.0; 200]);
+    for (policy, action) in policies.iter().zip(&mut actions) {
+        policy.evaluate_into(Arithmetic::Reproducible, &input, &mut scratch, action);
+    }
+    assert!((0..200).all(|i| (out[i] - 0.5 * (actions[0][i] + actions[1][i])).abs() < 1e-6));
+}

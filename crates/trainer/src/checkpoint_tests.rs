@@ -99,3 +99,24 @@ fn a_flipped_bit_is_found() {
     std::fs::write(&path, data).unwrap();
     assert!(Checkpoint::load(&path).unwrap_err().to_string().contains("written bytes"));
 }
+
+#[test]
+fn a_slim_checkpoint_holds_discriminators_in_half_precision() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("a.safetensors");
+    let mut with_discriminator = checkpoint();
+    let network = Network::new(&[40, 30, 1], 1.0, &mut Rng::new(9, 9));
+    let count = network.parameters.len();
+    let trained = Trained { network: network.clone(), adam: Adam::new(count) };
+    with_discriminator.networks.insert("walk.discriminator".into(), trained);
+    let [whole, slim] = [with_discriminator.clone(), with_discriminator.slim()].map(|checkpoint| {
+        checkpoint.save(&path).unwrap();
+        (std::fs::metadata(&path).unwrap().len(), Checkpoint::load(&path).unwrap())
+    });
+    assert_eq!(whole.1.networks["walk.discriminator"].network, network);
+    let halved = &slim.1.networks["walk.discriminator"].network;
+    let worst =
+        halved.parameters.iter().zip(&network.parameters).map(|(a, b)| (a - b).abs()).fold(0.0, f32::max);
+    assert!(worst > 0.0 && worst < 1e-3, "{worst}");
+    assert!(slim.0 + 2 * (count as u64) < whole.0, "{} after {}", slim.0, whole.0);
+}

@@ -7,6 +7,7 @@ pub mod clip;
 pub mod compare;
 pub mod env;
 pub mod evaluate;
+pub mod limp;
 pub mod lineage;
 pub mod nn;
 pub mod normaliser_file;
@@ -21,6 +22,7 @@ pub mod run;
 pub mod storage;
 pub mod strip;
 pub mod style;
+pub mod text;
 pub mod training;
 pub mod workspace;
 

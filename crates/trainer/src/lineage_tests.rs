@@ -1,3 +1,4 @@
+use super::execute::{check_stamp, stamp};
 use super::*;
 
 fn parse(steps: &str) -> Result<Lineage, LineageError> {

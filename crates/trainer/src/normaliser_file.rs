@@ -9,6 +9,7 @@ use safetensors::tensor::{Dtype, SafeTensors, TensorView};
 use crate::checkpoint::{CheckpointError, bytes, floats};
 use crate::env::Normalisers;
 use crate::storage::{read_bounded, write_atomically};
+use crate::text::quoted;
 
 const NAMES: [&str; 2] = ["observation", "discriminator"];
 
@@ -22,8 +23,10 @@ const MOST_BYTES: u64 = 1 << 20;
 pub fn load(path: &Path, skeleton: &Skeleton) -> Result<Normalisers, CheckpointError> {
     let data = read_bounded(path, MOST_BYTES)
         .map_err(|source| CheckpointError::Io { path: path.to_owned(), source })?;
-    let wrong =
-        |expected: String, found: String| CheckpointError::Content { path: path.to_owned(), expected, found };
+    let wrong = |expected: String, found: String| {
+        let found = quoted(&found);
+        CheckpointError::Content { path: path.to_owned(), expected, found }
+    };
     let tensors =
         SafeTensors::deserialize(&data).map_err(|e| wrong("a safetensors file".into(), e.to_string()))?;
     let read = |name: &str, len: usize| {

@@ -126,40 +126,8 @@ pub fn bind(
 ) -> Result<CharacterPack, BindError> {
     let skeleton = model.skeleton();
     let scaling = ActionScaling::from_skeleton(skeleton);
-    let mut scorers: Vec<&str> = plan.skills.iter().filter_map(|s| s.discriminator.as_deref()).collect();
-    scorers.sort_unstable();
-    scorers.dedup();
-    let find = |name: &str| {
-        trained.iter().find(|i| i.skill == name).ok_or_else(|| CheckpointError::Content {
-            path: PathBuf::from(name),
-            expected: "a trained skill of this name".into(),
-            found: "none".into(),
-        })
-    };
-    let mut policies = Vec::new();
-    let mut entries = Vec::new();
-    for planned in &plan.policies {
-        let skill = find(&planned.name)?;
-        policies.push(mlp(&skill.actor, &planned.name, "policy")?);
-        entries.push(PolicyEntry {
-            name: planned.name.clone(),
-            layers: skill.actor.sizes().to_vec(),
-            fall_height: planned.fall_height,
-            speed_mps: planned.speed_mps,
-            origin: skill.origin.clone(),
-        });
-    }
-    let mut discriminators = Vec::new();
-    let mut discriminator_entries = Vec::new();
-    for name in scorers {
-        let network = &find(name)?.discriminator;
-        discriminators.push(mlp(network, name, "discriminator")?);
-        discriminator_entries.push(DiscriminatorEntry {
-            name: name.into(),
-            layers: network.sizes().to_vec(),
-            storage: Storage::F16,
-        });
-    }
+    let (policies, entries) = policies(plan, trained)?;
+    let (discriminators, discriminator_entries) = discriminators(plan, trained)?;
     let manifest = Manifest {
         format: PACK_FORMAT.into(),
         version: PACK_VERSION,
@@ -189,6 +157,50 @@ pub fn bind(
         mesh,
     };
     Ok(CharacterPack::from_parts(manifest, tensors)?)
+}
+
+/// The trained skill of this name.
+fn find<'a>(trained: &'a [TrainedSkill], name: &str) -> Result<&'a TrainedSkill, CheckpointError> {
+    trained.iter().find(|skill| skill.skill == name).ok_or_else(|| CheckpointError::Content {
+        path: PathBuf::from(name),
+        expected: "a trained skill of this name".into(),
+        found: "none".into(),
+    })
+}
+
+/// The policies of a plan.
+fn policies(plan: &PackPlan, trained: &[TrainedSkill]) -> Result<(Vec<Mlp>, Vec<PolicyEntry>), BindError> {
+    let mut all = (Vec::new(), Vec::new());
+    for planned in &plan.policies {
+        let skill = find(trained, &planned.name)?;
+        all.0.push(mlp(&skill.actor, &planned.name, "policy")?);
+        all.1.push(PolicyEntry {
+            name: planned.name.clone(),
+            layers: skill.actor.sizes().to_vec(),
+            fall_height: planned.fall_height,
+            speed_mps: planned.speed_mps,
+            origin: skill.origin.clone(),
+        });
+    }
+    Ok(all)
+}
+
+/// The discriminators that end a plan's skills, each once.
+fn discriminators(
+    plan: &PackPlan,
+    trained: &[TrainedSkill],
+) -> Result<(Vec<Mlp>, Vec<DiscriminatorEntry>), BindError> {
+    let mut names: Vec<&str> = plan.skills.iter().filter_map(|s| s.discriminator.as_deref()).collect();
+    names.sort_unstable();
+    names.dedup();
+    let mut all = (Vec::new(), Vec::new());
+    for name in names {
+        let network = &find(trained, name)?.discriminator;
+        all.0.push(mlp(network, name, "discriminator")?);
+        let layers = network.sizes().to_vec();
+        all.1.push(DiscriminatorEntry { name: name.into(), layers, storage: Storage::F16 });
+    }
+    Ok(all)
 }
 
 /// A network as policy-core evaluates it.

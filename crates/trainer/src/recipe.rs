@@ -10,6 +10,7 @@ use serde::Serialize;
 use crate::amp::DiscriminatorConfig;
 use crate::env::EnvironmentConfig;
 use crate::ppo::PpoConfig;
+use crate::text::quoted;
 
 mod checks;
 mod file;
@@ -118,6 +119,7 @@ impl Recipe {
         recipe.check_ranges(path)?;
         for (holds, field, expected, found) in recipe.checks() {
             if !holds {
+                let found = quoted(&found);
                 return Err(RecipeError::Field { path: path.to_owned(), field, expected, found });
             }
         }

@@ -1,75 +1,26 @@
 //! One iteration of training: rollout, style, returns, gradient steps. The loop around it belongs to the program.
 
-use std::sync::Arc;
-
 use physics_bridge::{Model, ModelError};
+use policy_core::GraphPosition;
 use policy_core::training::ActionScaling;
-use policy_core::{BodyId, GraphPosition, Skeleton};
 
 use crate::amp::DiscriminatorReport;
 use crate::checkpoint::{ACTOR, CRITIC, DISCRIMINATOR, EMA, PARENT_DISCRIMINATOR};
 use crate::env::{
-    Demonstrations, EnvContext, EnvironmentConfig, EpisodeReport, GraphNode, HandOver, Normalisers,
-    RewardTerms, TerminationHeights, TrainingGraph, VecEnv,
+    EnvironmentConfig, EpisodeReport, GraphNode, Normalisers, RewardTerms, TrainingGraph, VecEnv,
 };
 use crate::nn::{Adam, Network};
 use crate::ppo::{Done, Learner, Rollout, UpdateReport};
 use crate::recipe::Recipe;
 use crate::style::Discriminators;
 
+mod shared;
+
+pub use shared::Parts;
+use shared::Shared;
+
 /// Hidden sizes of every policy.
 pub const POLICY_HIDDEN: [usize; 2] = [128, 32];
-
-/// What a run starts from. Actors, discriminators and clips are in the order of the graph's nodes.
-#[derive(Debug)]
-pub struct Parts {
-    /// Nodes and paths.
-    pub graph: TrainingGraph,
-    /// Actors and critic.
-    pub learner: Learner,
-    /// Discriminators of the nodes' styles, with their clips.
-    pub discriminators: Discriminators,
-    /// Other clips that episodes may start from.
-    pub start_demonstrations: Option<Demonstrations>,
-    /// What raises dropped characters, for starts.
-    pub hand_over: Option<HandOver>,
-    /// Heights that tell standing from lying.
-    pub heights: TerminationHeights,
-    /// Bodies that are pushed.
-    pub pushed: Vec<BodyId>,
-}
-
-/// What the environments share beside the discriminators' clips.
-#[derive(Debug)]
-struct Shared {
-    graph: TrainingGraph,
-    start_demonstrations: Option<Demonstrations>,
-    hand_over: Option<HandOver>,
-    normalisers: Normalisers,
-    heights: TerminationHeights,
-    pushed: Vec<BodyId>,
-    skeleton: Arc<Skeleton>,
-}
-
-impl Shared {
-    fn context<'a>(
-        &'a self,
-        config: &'a EnvironmentConfig,
-        demonstrations: &'a [&'a Demonstrations],
-    ) -> EnvContext<'a> {
-        EnvContext {
-            config,
-            graph: &self.graph,
-            demonstrations,
-            start_demonstrations: self.start_demonstrations.as_ref(),
-            hand_over: self.hand_over.as_ref(),
-            normalisers: &self.normalisers,
-            heights: &self.heights,
-            pushed: &self.pushed,
-            skeleton: &self.skeleton,
-        }
-    }
-}
 
 /// Everything a run of a recipe holds.
 #[derive(Debug)]

@@ -73,12 +73,11 @@ impl Crowd {
         let (members, batches) = (&mut self.members, &mut self.batches);
         let parts = members.par_chunks_mut(PART).zip(owners.par_chunks_mut(PART)).zip(batches);
         self.pool.install(|| {
-            let run =
-                |(part, ((members, owners), batch)): (usize, ((&mut [Member], &mut [C]), &mut Batch))| {
-                    let part = Part { first: part * PART, dt_secs, batched, members, owners };
-                    batch.tick(part, &steering)
-                };
-            parts.enumerate().map(run).sum()
+            let ticked = parts.enumerate().map(|(part, ((members, owners), batch))| {
+                let part = Part { first: part * PART, dt_secs, batched, members, owners };
+                batch.tick(part, &steering)
+            });
+            ticked.sum()
         })
     }
 

@@ -106,10 +106,7 @@ impl DiscriminatorLearner {
         chosen: &[u32],
     ) -> DiscriminatorReport {
         let width = self.network.inputs();
-        let row_of = |row: u32| {
-            let at = row as usize * width;
-            &inputs[at..at + width]
-        };
+        let row_of = |row: u32| &inputs[row as usize * width..(row as usize + 1) * width];
         if !chosen.is_empty() {
             for _ in 0..REPLAY_ROWS {
                 let row = row_of(chosen[self.rng.index(chosen.len())]);
@@ -123,23 +120,7 @@ impl DiscriminatorLearner {
         let per_lane = self.config.batch.div_ceil(LANES);
         let scale = 1.0 / (per_lane * LANES) as f32;
         for _ in 0..self.config.updates {
-            for lane in &mut self.lanes {
-                let (real, simulated) = lane.input.split_at_mut(per_lane * width);
-                for row in real.chunks_exact_mut(width) {
-                    demonstrations.sample_into(&mut self.rng, row);
-                    self.noise.add(&mut self.rng, self.config.noise_std, row);
-                }
-                for (i, row) in simulated.chunks_exact_mut(width).enumerate() {
-                    let fresh = i % 2 == 0 && !chosen.is_empty();
-                    let from = if fresh {
-                        row_of(chosen[self.rng.index(chosen.len())])
-                    } else {
-                        self.replay.draw(&mut self.rng)
-                    };
-                    row.copy_from_slice(from);
-                    self.noise.add(&mut self.rng, self.config.noise_std, row);
-                }
-            }
+            self.fill_lanes(demonstrations, inputs, chosen);
             let network = &self.network;
             self.lanes.par_iter_mut().for_each(|lane| {
                 lane.gradient.fill(0.0);
@@ -161,6 +142,30 @@ impl DiscriminatorLearner {
             report.squared_gradient += (first.loss.squared_gradient * each) as f32;
         }
         report
+    }
+
+    /// Fills the lanes of a gradient step: demonstrations, then rows of this rollout and of earlier ones by turns, with noise.
+    fn fill_lanes(&mut self, demonstrations: &Demonstrations, inputs: &[f32], chosen: &[u32]) {
+        let width = self.network.inputs();
+        let per_lane = self.config.batch.div_ceil(LANES);
+        let row_of = |row: u32| &inputs[row as usize * width..(row as usize + 1) * width];
+        for lane in &mut self.lanes {
+            let (real, simulated) = lane.input.split_at_mut(per_lane * width);
+            for row in real.chunks_exact_mut(width) {
+                demonstrations.sample_into(&mut self.rng, row);
+                self.noise.add(&mut self.rng, self.config.noise_std, row);
+            }
+            for (i, row) in simulated.chunks_exact_mut(width).enumerate() {
+                let fresh = i % 2 == 0 && !chosen.is_empty();
+                let from = if fresh {
+                    row_of(chosen[self.rng.index(chosen.len())])
+                } else {
+                    self.replay.draw(&mut self.rng)
+                };
+                row.copy_from_slice(from);
+                self.noise.add(&mut self.rng, self.config.noise_std, row);
+            }
+        }
     }
 }
 

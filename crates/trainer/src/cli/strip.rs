@@ -62,6 +62,18 @@ pub(crate) fn run(model: &Model, recipes: &Path, clips: &ClipFolder, a: &Argumen
         ];
         write(model, &a.out, &node.name, &rows)?;
     }
+    episodic_skills(model, &pack, recipes, clips, a)?;
+    layers(model, &pack, a)
+}
+
+/// Each episodic skill, whole, beside its clips.
+fn episodic_skills(
+    model: &Model,
+    pack: &Arc<CharacterPack>,
+    recipes: &Path,
+    clips: &ClipFolder,
+    a: &Arguments,
+) -> Result<()> {
     for (index, skill) in pack.skills().iter().enumerate() {
         let recipe = Recipe::load(&recipes.join(format!("{}.toml", skill.name)))?;
         let raises = pack.recovery() == Some(SkillId::new(index));
@@ -69,7 +81,7 @@ pub(crate) fn run(model: &Model, recipes: &Path, clips: &ClipFolder, a: &Argumen
         for (which, clip) in recipe.clips.iter().take(if raises { 2 } else { 1 }).enumerate() {
             let states = clip_states(model, &clips.load(&clip.name)?)?;
             let states = if raises { &states[..] } else { &states[..states.len() / 2] };
-            let motion = watch_skill(model, &pack, SkillId::new(index), which == 0);
+            let motion = watch_skill(model, pack, SkillId::new(index), which == 0);
             let name = if raises { clip.name.clone() } else { skill.name.clone() };
             // The whole of a skill on the strip, whatever it takes.
             let figures = |states: &[CharacterState]| -> Vec<CharacterState> {
@@ -95,7 +107,7 @@ pub(crate) fn run(model: &Model, recipes: &Path, clips: &ClipFolder, a: &Argumen
             write(model, &a.out, &name, &rows)?;
         }
     }
-    layers(model, &pack, a)
+    Ok(())
 }
 
 /// Single layers half-way from the second node of the first path to its third, and the policies at both ends.

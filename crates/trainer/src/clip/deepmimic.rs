@@ -4,6 +4,7 @@ use glam::{Quat, Vec3};
 use serde::Deserialize;
 
 use super::{Clip, ClipError, humanoid};
+use crate::text::quoted;
 
 #[derive(Deserialize)]
 struct File {
@@ -37,7 +38,7 @@ const HINGES: [(&str, usize); 4] =
 /// # Errors
 /// When it is not such a clip.
 pub fn parse(name: &str, text: &str) -> Result<Clip, ClipError> {
-    let wrong = |message: String| ClipError::Format { clip: name.into(), message };
+    let wrong = |message: String| ClipError::Format { clip: name.into(), message: quoted(&message) };
     let file: File = serde_json::from_str(text).map_err(|e| wrong(e.to_string()))?;
     let looping = match file.looping.as_str() {
         "wrap" => true,

@@ -10,6 +10,7 @@ use glam::{EulerRot, Mat3, Quat, Vec3};
 use policy_core::Skeleton;
 
 use super::ClipError;
+use crate::text::quoted;
 
 /// Rounds of the search for the angles of a body with other hinges.
 const SEARCH_ROUNDS: usize = 20;
@@ -56,7 +57,7 @@ impl JointFit {
             let source = bodies.iter().position(|b| b == name).ok_or_else(|| ClipError::Body {
                 clip: clip.into(),
                 expected: name.clone(),
-                found: bodies.join(", "),
+                found: quoted(&bodies.join(", ")),
             })?;
             let of_body = skeleton.joints().iter().enumerate().filter(|(_, joint)| joint.body == id);
             let (joints, axes) = of_body.map(|(index, joint)| (index, joint.axis.normalize())).unzip();

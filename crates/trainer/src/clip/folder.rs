@@ -3,6 +3,10 @@
 use std::path::{Path, PathBuf};
 
 use super::{Clip, ClipError, deepmimic, json, npy};
+use crate::storage::{read_bounded, read_text_bounded};
+
+/// Largest clip, bytes.
+const MOST_BYTES: u64 = 64 << 20;
 
 /// Environment variable that names the folder of clips.
 pub const MOTIONS_VARIABLE: &str = "POLICY_SPACE_MOTIONS";
@@ -46,9 +50,9 @@ pub fn load_file(path: &Path) -> Result<Clip, ClipError> {
     let name = path.file_stem().map(|s| s.to_string_lossy().into_owned()).unwrap_or_default();
     let io = |source| ClipError::Io { path: path.to_owned(), source };
     match path.extension().and_then(|e| e.to_str()) {
-        Some("json") => json::parse(&name, &std::fs::read_to_string(path).map_err(io)?),
-        Some("txt") => deepmimic::parse(&name, &std::fs::read_to_string(path).map_err(io)?),
-        Some("npy") => npy::parse(&name, &std::fs::read(path).map_err(io)?),
+        Some("json") => json::parse(&name, &read_text_bounded(path, MOST_BYTES).map_err(io)?),
+        Some("txt") => deepmimic::parse(&name, &read_text_bounded(path, MOST_BYTES).map_err(io)?),
+        Some("npy") => npy::parse(&name, &read_bounded(path, MOST_BYTES).map_err(io)?),
         other => Err(ClipError::Format {
             clip: name,
             message: format!("expected a file ending in .json, .txt or .npy, found {other:?}"),

@@ -5,6 +5,7 @@ use policy_core::training::MAX_SKELETON_PARTS;
 use serde::Deserialize;
 
 use super::{Clip, ClipError};
+use crate::text::quoted;
 
 #[derive(Deserialize)]
 struct File {
@@ -25,7 +26,7 @@ struct File {
 /// # Errors
 /// When it is not such a clip.
 pub fn parse(name: &str, text: &str) -> Result<Clip, ClipError> {
-    let wrong = |message: String| ClipError::Format { clip: name.into(), message };
+    let wrong = |message: String| ClipError::Format { clip: name.into(), message: quoted(&message) };
     let file: File = serde_json::from_str(text).map_err(|e| wrong(e.to_string()))?;
     let twice = |i: usize| file.bodies[..i].contains(&file.bodies[i]);
     if !(1..=MAX_SKELETON_PARTS).contains(&file.bodies.len()) || (1..file.bodies.len()).any(twice) {

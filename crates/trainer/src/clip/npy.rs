@@ -5,13 +5,16 @@ use glam::{Quat, Vec3};
 
 use super::pickle::{Id, Object, Pickle};
 use super::{Clip, ClipError, humanoid};
+use crate::text::quoted;
 
 /// Reads the bytes of an AMP clip.
 ///
 /// # Errors
 /// When it is not such a clip.
 pub fn parse(name: &str, bytes: &[u8]) -> Result<Clip, ClipError> {
-    read(name, bytes).map_err(|message| ClipError::Format { clip: name.into(), message })?.checked()
+    read(name, bytes)
+        .map_err(|message| ClipError::Format { clip: name.into(), message: quoted(&message) })?
+        .checked()
 }
 
 fn read(name: &str, bytes: &[u8]) -> Result<Clip, String> {

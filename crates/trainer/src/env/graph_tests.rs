@@ -1,3 +1,4 @@
+use super::super::config::EnvironmentConfig;
 use super::*;
 
 pub(in super::super) fn node(name: &str, speed_mps: f32) -> GraphNode {

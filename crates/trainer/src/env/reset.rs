@@ -11,6 +11,7 @@ use super::env::{Env, EnvContext};
 use super::exploration::Exploration;
 use super::track_clip::{Tracking, own_clips};
 use crate::clip::placed;
+use crate::limp::{go_limp, random_attitude};
 
 mod hand_over;
 mod pre_failure;
@@ -201,12 +202,7 @@ impl Env {
     /// Drops the character in a random attitude with loose joints and lets it fall for about a second.
     pub(super) fn drop_limp(&mut self, context: &EnvContext<'_>, start: &ReferenceState) {
         let mut pose = placed(&start.pose, self.ground_position.0, self.ground_position.1, 0.0);
-        let turn = glam::Quat::from_euler(
-            glam::EulerRot::ZYX,
-            self.rng.angle(),
-            self.rng.range(-1.6, 1.6),
-            self.rng.angle(),
-        );
+        let turn = random_attitude(&mut self.rng);
         pose.qpos[2] = f64::from(DROP_SHARE * context.config.reward.standing_root_metres)
             + f64::from(
                 self.character
@@ -223,20 +219,13 @@ impl Env {
         for _ in 0..ticks {
             self.character.sense_into(&mut self.state);
             self.push_frame(context);
-            self.go_limp();
+            go_limp(&mut self.character);
             if self.character.step().is_err() {
                 return self.start_from(start);
             }
         }
         self.character.sense_into(&mut self.state);
         self.push_frame(context);
-    }
-
-    /// Targets that follow the joints: nearly no torque but the joints' damping.
-    fn go_limp(&mut self) {
-        let pose = self.character.pose();
-        let targets: Vec<f32> = pose.qpos[7..].iter().map(|angle| *angle as f32).collect();
-        self.character.actuate(&targets);
     }
 }
 

@@ -58,14 +58,20 @@ pub fn distil(
                 threshold = skill.end.threshold;
             }
         }
-        let (network, agreement) = regress(large, &rows, threshold, stream as u64)?;
+        let (network, agreement) = regress(large, &rows, threshold, (STEPS, stream as u64))?;
         Some((entry.name.clone(), network, agreement))
     });
     small.collect()
 }
 
-/// A small network with the logits of a large one on these rows; `None` when there are too few.
-fn regress(large: &Network, rows: &[f32], threshold: f32, stream: u64) -> Option<(Network, Agreement)> {
+/// A small network with the logits of a large one on these rows, after so many gradient steps; `None` when there are too few
+/// rows.
+fn regress(
+    large: &Network,
+    rows: &[f32],
+    threshold: f32,
+    (steps, stream): (usize, u64),
+) -> Option<(Network, Agreement)> {
     let width = large.inputs();
     let count = rows.len() / width;
     if count < 2 * HELD_OUT {
@@ -83,7 +89,7 @@ fn regress(large: &Network, rows: &[f32], threshold: f32, stream: u64) -> Option
     let mut pass = Pass::new(&sizes, BATCH);
     let (mut input, mut wanted) = (vec![0.0; BATCH * width], vec![0.0; BATCH]);
     let mut gradient = vec![0.0; small.parameters.len()];
-    for step in 0..STEPS {
+    for step in 0..steps {
         for (input, wanted) in input.chunks_exact_mut(width).zip(&mut wanted) {
             let index = learned[rng.index(learned.len())];
             input.copy_from_slice(row(index));
@@ -98,7 +104,7 @@ fn regress(large: &Network, rows: &[f32], threshold: f32, stream: u64) -> Option
         }
         gradient.fill(0.0);
         pass.backward(&small, None, &input, &mut gradient, None);
-        let left = 1.0 - step as f32 / STEPS as f32;
+        let left = 1.0 - step as f32 / steps as f32;
         adam.step(&mut small.parameters, &gradient, LEARNING_RATE * left, 0.0);
     }
     let held: Vec<f32> = measured.iter().flat_map(|index| row(*index).iter().copied()).collect();
@@ -126,9 +132,9 @@ mod tests {
     #[test]
     fn a_small_network_learns_the_logits_of_a_large_one() {
         let mut rng = Rng::new(3, 1);
-        let large = Network::new(&[6, 64, 64, 1], 2.0, &mut rng);
+        let large = Network::new(&[6, 16, 1], 1.0, &mut rng);
         let rows: Vec<f32> = (0..4000 * 6).map(|_| rng.normal()).collect();
-        let (small, agreement) = regress(&large, &rows, 0.5, 0).unwrap();
+        let (small, agreement) = regress(&large, &rows, 0.5, (300, 0)).unwrap();
         assert_eq!(small.sizes(), [6, 96, 32, 1]);
         assert_eq!(agreement.rows, 400);
         assert!(agreement.same_side > 0.93 && agreement.score_error < 0.05, "{agreement:?}");
@@ -137,6 +143,6 @@ mod tests {
     #[test]
     fn too_few_rows_teach_nothing() {
         let large = Network::new(&[6, 8, 1], 1.0, &mut Rng::new(3, 1));
-        assert!(regress(&large, &[0.0; 60], 0.5, 0).is_none());
+        assert!(regress(&large, &[0.0; 60], 0.5, (300, 0)).is_none());
     }
 }

@@ -7,6 +7,7 @@ use serde::Deserialize;
 
 use super::BindError;
 use crate::storage::read_text_bounded;
+use crate::text::quoted;
 
 /// Largest plan, bytes.
 const MOST_BYTES: u64 = 1 << 20;
@@ -61,7 +62,8 @@ impl PackPlan {
     pub fn load(path: &Path) -> Result<Self, BindError> {
         let text = read_text_bounded(path, MOST_BYTES)
             .map_err(|source| BindError::Io { path: path.to_owned(), source })?;
-        toml::from_str(&text).map_err(|e| BindError::Plan { path: path.to_owned(), message: e.to_string() })
+        toml::from_str(&text)
+            .map_err(|e| BindError::Plan { path: path.to_owned(), message: quoted(&e.to_string()) })
     }
 
     /// The plan without skills that `trained` refuses: their nodes, edges and episodic skills go, paths close over

@@ -2,8 +2,8 @@
 
 use std::sync::Arc;
 
-use glam::{EulerRot, Quat, Vec2};
-use physics_bridge::{Character, Model, Pose, WALKING_START_MPS};
+use glam::Vec2;
+use physics_bridge::{Character, Model, WALKING_START_MPS};
 use policy_core::training::{FrameHistory, TARGET_RANGE_METRES, discriminator_frame_into};
 use policy_core::{
     CharacterPack, CharacterState, Command, Controller, ControllerConfig, Goal, Heading, NodeId, SkillId,
@@ -11,6 +11,7 @@ use policy_core::{
 use rayon::prelude::*;
 
 use crate::Rng;
+use crate::limp::{go_limp, lift_anyhow};
 
 /// Seconds at the entry node before a skill starts, of lying limp before a recovery, and after the hand-over.
 const BEFORE_SECS: f32 = 2.0;
@@ -122,19 +123,9 @@ impl Rollout {
 
     /// Drops the character in a random attitude with loose joints; `None` when the physics diverged.
     fn drop_limp(&mut self) -> Option<()> {
-        let rng = &mut self.rng;
-        let turn = Quat::from_euler(EulerRot::ZYX, rng.angle(), rng.range(-1.6, 1.6), rng.angle());
-        let mut pose = Pose::new(self.pack.skeleton());
-        pose.qpos[2] = f64::from(DROP_METRES);
-        pose.qpos[3..7].copy_from_slice(&[turn.w, turn.x, turn.y, turn.z].map(f64::from));
-        for (angle, joint) in pose.qpos[7..].iter_mut().zip(self.pack.skeleton().joints()) {
-            *angle = f64::from(0.5 * rng.range(joint.range[0], joint.range[1]));
-        }
-        self.character.set_pose(&pose.qpos, &pose.qvel).ok()?;
+        lift_anyhow(&mut self.character, DROP_METRES, &mut self.rng).ok()?;
         for _ in 0..(BEFORE_SECS / self.dt_secs) as usize {
-            self.character.pose_into(&mut pose);
-            let targets: Vec<f32> = pose.qpos[7..].iter().map(|angle| *angle as f32).collect();
-            self.character.actuate(&targets);
+            go_limp(&mut self.character);
             self.character.step().ok()?;
             self.character.sense_into(&mut self.state);
             self.record();

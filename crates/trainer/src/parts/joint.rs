@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use anyhow::{Context, Result, ensure};
+use anyhow::{Context, Result};
 use policy_core::{Controller, ControllerConfig, SkillId};
 
 use super::{bodies, critic_sizes};
@@ -56,35 +56,18 @@ impl Workspace {
             recipe.paths.iter().map(|p| p.iter().filter_map(index).collect()).collect();
         let factors = recipe.last().environment.command.edge_secs_factors;
         let graph = TrainingGraph::along(nodes, &paths, factors)?;
-        let mut halfway = Vec::new();
-        for ends in &recipe.halfway {
-            let edge = ends.each_ref().map(index);
-            let edge = graph.pairs().iter().position(|e| e.map(Some) == edge);
-            let edge = edge.with_context(|| {
-                format!("expected an edge of the paths in halfway, found {} to {}", ends[0], ends[1])
-            })?;
-            halfway.push(edge);
-            let known = scorers[graph.pairs()[edge][1]].discriminator.as_ref().map(|d| d.network.clone());
-            let seed = seed.wrapping_add(halfway.len() as u64);
-            let learner =
-                DiscriminatorLearner::new(recipe.first().discriminator.clone(), scored, known, seed, 30);
-            scorers.push(NodeDiscriminator {
-                demonstrations: self.halfway_clip(ends)?,
-                discriminator: Some(learner),
-            });
+        let halfway = self.halfway_edges(recipe, &graph, index)?;
+        for (count, (ends, edge)) in recipe.halfway.iter().zip(&halfway).enumerate() {
+            let [_, to] = graph.pairs()[*edge];
+            let known = scorers[to].discriminator.as_ref().map(|d| d.network.clone());
+            let (config, seed) = (recipe.first().discriminator.clone(), seed.wrapping_add(count as u64 + 1));
+            let discriminator = Some(DiscriminatorLearner::new(config, scored, known, seed, 30));
+            let demonstrations = self.halfway_clip(ends)?;
+            scorers.push(NodeDiscriminator { demonstrations, discriminator });
         }
-        let sizes = critic_sizes(skeleton, recipe, graph.context_len());
         let mut rng = Rng::new(seed, 1);
-        let critic = match root {
-            Some(root) if root.sizes() == sizes => root,
-            Some(root)
-                if root.inputs() == skeleton.policy_input_len() + 1 && root.sizes()[1..] == sizes[1..] =>
-            {
-                widened(&root, &graph)
-            }
-            _ => Network::new(&sizes, 0.1, &mut rng),
-        };
-        ensure!(critic.sizes() == sizes, "expected a critic of sizes {sizes:?}, found {:?}", critic.sizes());
+        let critic =
+            joint_critic(root, critic_sizes(skeleton, recipe, graph.context_len()), &graph, &mut rng);
         let learner = Learner::new(recipe.first().ppo.clone(), actors, graph.pairs().to_vec(), critic, rng);
         let start_demonstrations = self.start_clips(recipe)?;
         let hand_over = match &recipe.first().environment.reset.hand_over {
@@ -94,6 +77,23 @@ impl Workspace {
         let discriminators = Discriminators::new(scorers, halfway);
         let (heights, pushed) = bodies(recipe, skeleton)?;
         Ok(Parts { graph, learner, discriminators, start_demonstrations, hand_over, heights, pushed })
+    }
+
+    /// Indices of the edges whose middle has a style of its own.
+    fn halfway_edges(
+        &self,
+        recipe: &Recipe,
+        graph: &TrainingGraph,
+        index: impl Fn(&String) -> Option<usize>,
+    ) -> Result<Vec<usize>> {
+        let edge = |ends: &[String; 2]| {
+            let wanted = ends.each_ref().map(&index);
+            let found = graph.pairs().iter().position(|pair| pair.map(Some) == wanted);
+            found.with_context(|| {
+                format!("expected an edge of the paths in halfway, found {} to {}", ends[0], ends[1])
+            })
+        };
+        recipe.halfway.iter().map(edge).collect()
     }
 
     /// An episodic skill of the pack's plan, ready to raise dropped characters.
@@ -130,6 +130,16 @@ impl Workspace {
         let [slow, fast] = recipes.map(|recipe| self.clips.load(&recipe.clips[0].name));
         let clip = fast?.towards(&slow?, 0.5);
         Ok(Demonstrations::from_clips(&[(clip, 1.0, true)], &self.model, &self.normalisers.frame)?)
+    }
+}
+
+/// The critic of a joint run: that of the root of the graph where it fits or can be widened, else a new one.
+fn joint_critic(root: Option<Network>, sizes: Vec<usize>, graph: &TrainingGraph, rng: &mut Rng) -> Network {
+    let policy = sizes[0] - graph.context_len();
+    match root {
+        Some(root) if root.sizes() == sizes => root,
+        Some(root) if root.inputs() == policy + 1 && root.sizes()[1..] == sizes[1..] => widened(&root, graph),
+        _ => Network::new(&sizes, 0.1, rng),
     }
 }
 

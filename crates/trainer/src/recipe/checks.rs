@@ -20,6 +20,7 @@ impl Recipe {
         let mut checks = self.graph_checks();
         if checks.iter().all(|check| check.0) {
             checks.extend(self.phases.iter().flat_map(|phase| self.phase_checks(phase)));
+            checks.extend(self.phases.iter().flat_map(|phase| self.reward_checks(phase)));
         }
         checks
     }
@@ -85,8 +86,7 @@ impl Recipe {
     fn phase_checks(&self, phase: &Phase) -> Vec<Check> {
         let Phase { environment: env, ppo, discriminator, .. } = phase;
         let first = self.first();
-        let (reward, reset, command) = (&env.reward, &env.reset, &env.command);
-        let together = !self.paths.is_empty();
+        let (reset, command) = (&env.reset, &env.command);
         let ordered = |[least, most]: [f32; 2]| least <= most;
         let rows = env.num_envs.saturating_mul(env.horizon);
         let hidden = |sizes: &[usize]| (1..=MOST_HIDDEN).contains(&sizes.len());
@@ -129,6 +129,15 @@ impl Recipe {
                 "the least value before the largest",
                 format!("{} and {}", ppo.min_learning_rate, ppo.max_learning_rate),
             ),
+        ]
+    }
+
+    /// What goes with skills alone, and what with skills that are trained together.
+    fn reward_checks(&self, phase: &Phase) -> Vec<Check> {
+        let Phase { environment, ppo, .. } = phase;
+        let (reward, reset) = (&environment.reward, &environment.reset);
+        let together = !self.paths.is_empty();
+        vec![
             (
                 together || reward.task_weight + reward.tracking_weight <= 1.0 + 1e-6,
                 "environment.reward.task_weight and tracking_weight",

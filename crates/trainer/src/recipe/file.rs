@@ -8,6 +8,7 @@ use toml::{Table, Value};
 
 use super::{Phase, Recipe, RecipeError};
 use crate::storage::read_text_bounded;
+use crate::text::quoted;
 
 /// Largest file, bytes.
 const MOST_BYTES: u64 = 1 << 20;
@@ -99,7 +100,7 @@ pub(super) fn parse(path: &Path, text: &str) -> Result<Recipe, RecipeError> {
         }
         Some(name) => {
             let (field, expected) = ("character", "lower-case letters, digits and underscores");
-            return Err(RecipeError::Field { path: path.to_owned(), field, expected, found: name.clone() });
+            return Err(RecipeError::Field { path: path.to_owned(), field, expected, found: quoted(name) });
         }
         None => CharacterFile::default(),
     };
@@ -141,7 +142,8 @@ pub fn is_plain(name: &str) -> bool {
 }
 
 fn from_text<T: DeserializeOwned>(path: &Path, text: &str) -> Result<T, RecipeError> {
-    toml::from_str(text).map_err(|e| RecipeError::Toml { path: path.to_owned(), message: e.to_string() })
+    toml::from_str(text)
+        .map_err(|e| RecipeError::Toml { path: path.to_owned(), message: quoted(&e.to_string()) })
 }
 
 /// A section of the configuration with a phase's table over it.
@@ -151,8 +153,10 @@ fn section<T: DeserializeOwned>(
     base: &Table,
     over: &Table,
 ) -> Result<T, RecipeError> {
-    T::deserialize(Value::Table(overlaid(base, over)))
-        .map_err(|e| RecipeError::Toml { path: path.to_owned(), message: format!("{name}: {}", e.message()) })
+    T::deserialize(Value::Table(overlaid(base, over))).map_err(|e| RecipeError::Toml {
+        path: path.to_owned(),
+        message: format!("{name}: {}", quoted(e.message())),
+    })
 }
 
 /// The fields of `base` and `over`; where both have one, that of `over`. Tables are overlaid field by field.

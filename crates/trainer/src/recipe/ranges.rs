@@ -5,6 +5,7 @@ use std::path::Path;
 use toml::Value;
 
 use super::{Recipe, RecipeError};
+use crate::text::quoted;
 
 /// Field, least and largest value. A star stands for any name, as in tables of bodies.
 const RANGES: &[(&str, f64, f64)] = &[
@@ -109,14 +110,14 @@ fn check(path: &Path, value: &Value, field: &str, key: &str) -> Result<(), Recip
         _ => return Ok(()),
     };
     let Some((least, most)) = range(key) else {
-        let message = format!("{field} has no range");
+        let message = format!("{} has no range", quoted(field));
         return Err(RecipeError::Toml { path: path.to_owned(), message });
     };
     // In single precision, as the fields are; not a number is in no range.
     if (least as f32..=most as f32).contains(&(found as f32)) {
         return Ok(());
     }
-    Err(RecipeError::Range { path: path.to_owned(), field: field.to_owned(), least, most, found })
+    Err(RecipeError::Range { path: path.to_owned(), field: quoted(field), least, most, found })
 }
 
 /// The range of a field by its key, as `phases.ppo.gamma` or `clips.share`.

@@ -1,0 +1,99 @@
+//! Reading checkpoints of any version. Nothing is allocated before its size is compared with that of the file.
+
+use std::collections::HashMap;
+
+use safetensors::tensor::SafeTensors;
+
+use super::numbers::floats;
+use super::{Checkpoint, EMA, FORMAT, Progress, Trained};
+use crate::nn::{Adam, Network};
+use crate::text::quoted;
+
+/// [`EMA`] in version 1.
+const EMA_OF_VERSION_1: &str = "average";
+
+/// Most networks of a checkpoint.
+const MOST_NETWORKS: usize = 256;
+
+/// Most layers of a network, and most units of a layer.
+const MOST_LAYERS: usize = 16;
+const MOST_UNITS: usize = 1 << 14;
+
+/// What a file should hold and what it holds.
+pub(super) struct Wrong {
+    pub(super) expected: String,
+    pub(super) found: String,
+}
+
+fn wrong(expected: impl Into<String>, found: impl Into<String>) -> Wrong {
+    Wrong { expected: quoted(&expected.into()), found: quoted(&found.into()) }
+}
+
+/// Parses the bytes of a checkpoint. Nothing is allocated before its size is compared with that of the file.
+pub(super) fn read(data: &[u8]) -> Result<Checkpoint, Wrong> {
+    let not_safe = |e: safetensors::SafeTensorError| wrong("a whole safetensors file", e.to_string());
+    let (_, meta) = SafeTensors::read_metadata(data).map_err(not_safe)?;
+    let text = meta.metadata().as_ref().and_then(|m| m.get("progress"));
+    let text = text.ok_or_else(|| wrong("metadata `progress`", "none"))?;
+    let progress: Progress =
+        serde_json::from_str(text).map_err(|e| wrong("metadata `progress`", e.to_string()))?;
+    if !(1..=FORMAT).contains(&progress.format) {
+        return Err(wrong(format!("format 1 to {FORMAT}"), progress.format.to_string()));
+    }
+    if !(progress.learning_rate.is_finite() && progress.learning_rate > 0.0 && progress.secs >= 0.0) {
+        let found = format!("{} and {}", progress.learning_rate, progress.secs);
+        return Err(wrong("a positive learning rate and seconds of at least 0", found));
+    }
+    if progress.sizes.len() > MOST_NETWORKS {
+        return Err(wrong(format!("at most {MOST_NETWORKS} networks"), progress.sizes.len().to_string()));
+    }
+    let tensors = SafeTensors::deserialize(data).map_err(not_safe)?;
+    let mut networks = HashMap::new();
+    for (role, (sizes, steps)) in &progress.sizes {
+        let trained = read_network(role, sizes, *steps, &tensors, &progress.checksums)?;
+        networks.insert(present_role(role), trained);
+    }
+    let p = &progress;
+    Ok(Checkpoint::new(networks, (p.seed, p.samples, p.secs), p.learning_rate, p.rng))
+}
+
+/// Today's name of a role.
+fn present_role(role: &str) -> String {
+    match role.strip_suffix(EMA_OF_VERSION_1) {
+        Some(before) if before.is_empty() || before.ends_with('.') => format!("{before}{EMA}"),
+        _ => role.to_owned(),
+    }
+}
+
+fn read_network(
+    role: &str,
+    sizes: &[usize],
+    steps: u64,
+    tensors: &SafeTensors<'_>,
+    checksums: &HashMap<String, u32>,
+) -> Result<Trained, Wrong> {
+    let layers = 2..=MOST_LAYERS;
+    if !layers.contains(&sizes.len()) || sizes.iter().any(|s| *s == 0 || *s > MOST_UNITS) {
+        let expected = format!("2 to {MOST_LAYERS} sizes of 1 to {MOST_UNITS} for {role}");
+        return Err(wrong(expected, format!("{} sizes, the largest {:?}", sizes.len(), sizes.iter().max())));
+    }
+    // At most 15 layers of 2^28 parameters: no overflow.
+    let count = Network::parameter_count(sizes);
+    let read = |part: &str| {
+        let name = format!("{role}.{part}");
+        let view = tensors.tensor(&name).map_err(|e| wrong(format!("tensor {name}"), e.to_string()))?;
+        if checksums.get(&name).is_some_and(|sum| *sum != crc32fast::hash(view.data())) {
+            return Err(wrong(format!("the written bytes in {name}"), "others"));
+        }
+        let expected = format!("{count} finite numbers in {name}");
+        floats(&view, count).ok_or_else(|| wrong(expected, format!("shape {:?}", view.shape())))
+    };
+    let parameters = read("parameters")?;
+    let mut network = Network::zeros(sizes);
+    network.parameters = parameters;
+    let adam = match steps {
+        0 => Adam::new(count),
+        steps => Adam { mean: read("mean")?, square: read("square")?, steps },
+    };
+    Ok(Trained { network, adam })
+}

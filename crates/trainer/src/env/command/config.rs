@@ -1,0 +1,56 @@
+//! Settings of commands.
+
+use serde::{Deserialize, Serialize};
+
+/// What characters are told to do.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+pub struct CommandConfig {
+    /// Speed that the skill is commanded to, metres per second.
+    pub speed_mps: f32,
+    /// Distance of new targets, metres, least and most.
+    pub target_metres: [f32; 2],
+    /// Seconds until a target is renewed, least and most.
+    pub target_secs: [f32; 2],
+    /// Share of targets that lie where the character stands.
+    pub stop_share: f32,
+    /// Share of episodes whose target moves ahead of the character, as the stick of a pad has it.
+    pub stick_share: f32,
+    /// Share of a stick's new directions that are any at all; the others turn by at most 90 degrees.
+    pub any_direction_share: f32,
+    /// Share of coordinates that go to and fro over the whole path, without a rest.
+    pub sweep_share: f32,
+    /// Seconds in which a moving coordinate crosses an edge, least and most.
+    pub edge_sweep_secs: [f32; 2],
+    /// Seconds that a moving coordinate rests where it arrived, least and most.
+    pub edge_rest_secs: [f32; 2],
+    /// Share of moving coordinates that jump to where they are sent.
+    pub jump_share: f32,
+    /// Least seconds to cross an edge of this skill, as in a pack; 0 for no limit.
+    pub edge_secs: f32,
+    /// Factors on these seconds for edges between fully upright nodes, to a faster position and to a slower one. Crossing
+    /// faster than the pack does leaves a margin.
+    pub edge_secs_factors: [f32; 2],
+    /// True to stay at the end of the path: on an edge, at the skill itself.
+    pub stay_at_end: bool,
+}
+
+impl Default for CommandConfig {
+    fn default() -> Self {
+        Self {
+            speed_mps: 1.25,
+            target_metres: [1.0, 10.0],
+            target_secs: [2.0, 7.0],
+            stop_share: 0.15,
+            stick_share: 0.0,
+            any_direction_share: 0.1,
+            sweep_share: 0.0,
+            edge_sweep_secs: [0.5, 6.0],
+            edge_rest_secs: [0.0, 2.0],
+            jump_share: 0.15,
+            edge_secs: 0.0,
+            edge_secs_factors: [1.0, 1.0],
+            stay_at_end: false,
+        }
+    }
+}

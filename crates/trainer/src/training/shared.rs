@@ -1,0 +1,63 @@
+//! What a run starts from, and what its environments share.
+
+use std::sync::Arc;
+
+use policy_core::{BodyId, Skeleton};
+
+use crate::env::{
+    Demonstrations, EnvContext, EnvironmentConfig, HandOver, Normalisers, TerminationHeights, TrainingGraph,
+};
+use crate::ppo::Learner;
+use crate::style::Discriminators;
+
+/// What a run starts from. Actors, discriminators and clips are in the order of the graph's nodes.
+#[derive(Debug)]
+pub struct Parts {
+    /// Nodes and paths.
+    pub graph: TrainingGraph,
+    /// Actors and critic.
+    pub learner: Learner,
+    /// Discriminators of the nodes' styles, with their clips.
+    pub discriminators: Discriminators,
+    /// Other clips that episodes may start from.
+    pub start_demonstrations: Option<Demonstrations>,
+    /// What raises dropped characters, for starts.
+    pub hand_over: Option<HandOver>,
+    /// Heights that tell standing from lying.
+    pub heights: TerminationHeights,
+    /// Bodies that are pushed.
+    pub pushed: Vec<BodyId>,
+}
+
+/// What the environments share beside the discriminators' clips.
+#[derive(Debug)]
+pub(super) struct Shared {
+    pub(super) graph: TrainingGraph,
+    pub(super) start_demonstrations: Option<Demonstrations>,
+    pub(super) hand_over: Option<HandOver>,
+    pub(super) normalisers: Normalisers,
+    pub(super) heights: TerminationHeights,
+    pub(super) pushed: Vec<BodyId>,
+    pub(super) skeleton: Arc<Skeleton>,
+}
+
+impl Shared {
+    /// What environments see of it, with the settings of a phase.
+    pub(super) fn context<'a>(
+        &'a self,
+        config: &'a EnvironmentConfig,
+        demonstrations: &'a [&'a Demonstrations],
+    ) -> EnvContext<'a> {
+        EnvContext {
+            config,
+            graph: &self.graph,
+            demonstrations,
+            start_demonstrations: self.start_demonstrations.as_ref(),
+            hand_over: self.hand_over.as_ref(),
+            normalisers: &self.normalisers,
+            heights: &self.heights,
+            pushed: &self.pushed,
+            skeleton: &self.skeleton,
+        }
+    }
+}
