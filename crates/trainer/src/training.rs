@@ -1,15 +1,13 @@
 //! One iteration of training: rollout, style, returns, gradient steps. The loop around it belongs to the program.
 
-
 use physics_bridge::{Model, ModelError};
-use policy_core::training::ActionScaling;
 use policy_core::GraphPosition;
+use policy_core::training::ActionScaling;
 
 use crate::amp::DiscriminatorReport;
 use crate::checkpoint::{ACTOR, CRITIC, DISCRIMINATOR, EMA, PARENT_DISCRIMINATOR};
 use crate::env::{
-    EnvironmentConfig, EpisodeReport, GraphNode, Normalisers,
-    RewardTerms, TrainingGraph, VecEnv,
+    EnvironmentConfig, EpisodeReport, GraphNode, Normalisers, RewardTerms, TrainingGraph, VecEnv,
 };
 use crate::nn::{Adam, Network};
 use crate::ppo::{Done, Learner, Rollout, UpdateReport};
