@@ -120,3 +120,18 @@ fn a_slim_checkpoint_holds_discriminators_in_half_precision() {
     assert!(worst > 0.0 && worst < 1e-3, "{worst}");
     assert!(slim.0 + 2 * (count as u64) < whole.0, "{} after {}", slim.0, whole.0);
 }
+
+#[test]
+fn the_kept_checkpoints_load() {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../assets/checkpoints");
+    let mut count = 0;
+    for entry in std::fs::read_dir(folder).unwrap() {
+        let path = entry.unwrap().path();
+        if path.file_stem().is_some_and(|name| name != "normaliser") {
+            let checkpoint = Checkpoint::load(&path).unwrap();
+            assert!(checkpoint.networks.keys().any(|role| role.ends_with(ACTOR)), "{}", path.display());
+            count += 1;
+        }
+    }
+    assert!(count > 0);
+}
