@@ -142,7 +142,7 @@ fn a_crowd_of_them_does_the_same_as_each_alone() {
 #[test]
 fn a_humanoid_cannot_be_steered_by_its_pack() {
     let pack = pack();
-    let mut humanoid = Character::new(&Model::from_mjcf(integration_tests::HUMANOID_MJCF).unwrap());
+    let humanoid = Character::new(&Model::from_mjcf(integration_tests::HUMANOID_MJCF).unwrap());
     let mut controller = Controller::new(Arc::clone(&pack));
     let mut state = CharacterState::new(humanoid.model().skeleton());
     humanoid.sense_into(&mut state);

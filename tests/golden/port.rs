@@ -90,26 +90,31 @@ pub fn port_golden() -> PortGolden {
     serde_json::from_str(include_str!("port.json")).expect("the golden file is valid")
 }
 
-/// Makes the values anew. Every 10th of 200 ticks of a walk with a moving trigger and a turning target is kept as a state;
-/// then one controller runs over the kept states alone, so that the file has all that its values depend on.
+/// Makes the values anew. Every fifth of 200 ticks of a walk with a moving trigger and a turning target is kept as a
+/// state. Then one controller runs over the kept states alone, so that the file has all that its values depend on.
 ///
 /// # Panics
 /// When the physics diverges or the pack lacks a name.
 #[must_use]
 pub fn made_anew() -> PortGolden {
+    /// Ticks from one kept state to the next.
+    const EVERY: u16 = 5;
     let pack = reference_pack();
     let mut controller = controller(&pack);
     let mut character = Character::new(&Model::from_mjcf(HUMANOID_MJCF).expect("the humanoid compiles"));
     let mut kept = Vec::new();
     for tick in 0..200u16 {
         let seconds = f32::from(tick) * DT_SECS;
-        let asked = PortCommand {
-            target: (!(120..140).contains(&tick)).then(|| Vec2::new(4.0 - seconds, 1.5 * seconds)),
-            path: "speed".into(),
-            coordinate: (0.5 - 0.5 * (1.3 * seconds).cos()).clamp(0.0, 1.0),
+        // Idle, then to Walk and some ticks there, then back into a blend.
+        let coordinate = match tick / EVERY {
+            0..4 => 0.0,
+            4..34 => 1.0,
+            _ => 0.25,
         };
+        let target = (!(120..140).contains(&tick)).then(|| Vec2::new(4.0 - seconds, 1.5 * seconds));
+        let asked = PortCommand { target, path: "speed".into(), coordinate };
         character.control_tick(&mut controller, &command(&pack, &asked), DT_SECS).expect("it only walks");
-        if tick % 10 == 9 {
+        if tick % EVERY == EVERY - 1 {
             kept.push((character.sensed().clone(), asked));
         }
     }

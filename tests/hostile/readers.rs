@@ -3,18 +3,25 @@
 use std::error::Error;
 use std::fs;
 use std::path::Path;
-use std::sync::Arc;
+use std::sync::{Arc, LazyLock};
 
 use gamepad::Script;
 use gamepad::descriptor::Descriptor;
 use gamepad::pads::Parser;
 use gamepad::recording::{Recording, VirtualPad};
 use gamepad::{Bus, PadId, PadInput};
-use physics_bridge::{Character, Dump, Model};
-use policy_core::{CharacterPack, CharacterState, Command, Controller};
+use physics_bridge::{Character, Model, ReplayFile};
+use policy_core::glam::Vec2;
+use policy_core::{CharacterState, Command, Controller, ControllerState, Goal, NodeId, SkillId};
 use trainer::checkpoint::Checkpoint;
+use trainer::lineage::Lineage;
+use trainer::pack::PackPlan;
 use trainer::recipe::Recipe;
-use viewer::app::Layout;
+use viewer::app::PanelLayout;
+use viewer::dropped::Dropped;
+use viewer::pose_clip::PoseClip;
+
+use integration_tests::{DT_SECS, HUMANOID_MJCF, reference_pack};
 
 /// Reads one file. The error is the message that a user would see.
 pub type Read = fn(&Path) -> Result<(), String>;
@@ -22,20 +29,26 @@ pub type Read = fn(&Path) -> Result<(), String>;
 /// All readers by name; `seeds` has sound files for each.
 pub const ALL: &[(&str, Read)] = &[
     ("pack", pack),
-    ("mesh", mesh),
+    ("state", state),
+    ("dropped", dropped),
     ("mjcf", mjcf),
-    ("dump", dump),
-    ("poses", poses),
+    ("replay_file", replay_file),
+    ("pose_clip", pose_clip),
     ("layout", layout),
     ("script", script),
     ("recording", recording),
     ("descriptor", descriptor),
     ("recipe", recipe),
     ("plan", plan),
+    ("lineage", lineage),
     ("checkpoint", checkpoint),
     ("normalisers", normalisers),
     ("clip", clip),
 ];
+
+/// The body of the humanoid, compiled once.
+static HUMANOID: LazyLock<Model> =
+    LazyLock::new(|| Model::from_mjcf(HUMANOID_MJCF).expect("the humanoid compiles"));
 
 /// The message of an error and of those below it, as the programs print them.
 fn told(error: impl Error) -> String {
@@ -50,24 +63,58 @@ fn told(error: impl Error) -> String {
 }
 
 fn pack(path: &Path) -> Result<(), String> {
-    let bytes = fs::read(path).map_err(told)?;
-    let pack = Arc::new(CharacterPack::from_bytes(&bytes).map_err(told)?);
-    let state = CharacterState::default();
-    let mut controller = Controller::new(Arc::clone(&pack));
-    for skill in [None].into_iter().chain((0..pack.skills().len().min(8)).map(Some)) {
-        let command = Command { skill, ..Command::default() };
-        for _ in 0..5 {
-            let targets = controller.tick(&state, &command, 1.0 / 30.0);
-            assert!(targets.0.iter().all(|target| target.is_finite()), "a joint target is not finite");
-        }
+    let pack = viewer::cli::load::pack(Some(path)).map_err(|error| format!("{error:#}"))?;
+    steer(&mut Controller::new(Arc::clone(&pack)));
+    // A pack brings its body and its mesh; both are opened with it.
+    if pack.mjcf().is_some()
+        && let Ok(model) = Model::for_pack(&pack)
+    {
+        viewer::appearance::of_pack(&pack, &model);
+        walk_on(Character::new(&model));
     }
     Ok(())
 }
 
-fn mesh(path: &Path) -> Result<(), String> {
-    let mesh = viewer::mesh::SkinnedMesh::load(path).map_err(told)?;
-    let positions = [glam::Vec3::ZERO; 15];
-    mesh.palette_into(&positions, &[glam::Quat::IDENTITY; 15], &mut Vec::new());
+/// Some ticks; their joint targets must be finite.
+fn steer(controller: &mut Controller) {
+    let mut state = CharacterState::new(controller.pack().skeleton());
+    for tick in 0..12u8 {
+        let height = f32::from(tick % 4) * 0.4;
+        state.bodies.iter_mut().for_each(|body| body.position.z = height);
+        let command = Command {
+            target: Some(Vec2::new(2.0, height)),
+            goal: Goal::Node(NodeId::new(tick.into())),
+            skill: (tick % 3 == 0).then(|| SkillId::new(usize::from(tick / 3))),
+            ..Command::default()
+        };
+        let targets = controller.tick(&state, &command, DT_SECS);
+        assert!(targets.iter().all(|target| target.is_finite()), "a joint target is not finite");
+    }
+}
+
+/// The bytes of a controller's state, as a saved game or another player sends them.
+fn state(path: &Path) -> Result<(), String> {
+    // The game knows the length, so it reads no more.
+    let pack = reference_pack();
+    let mut state = ControllerState::new(&pack);
+    let bytes = viewer::files::read(path, state.byte_len() as u64).map_err(told)?;
+    state.read_bytes(&pack, &bytes).map_err(told)?;
+    let mut controller = Controller::new(pack);
+    controller.restore(&state).map_err(told)?;
+    steer(&mut controller);
+    Ok(())
+}
+
+/// A file dropped on the window: a pack or a mesh.
+fn dropped(path: &Path) -> Result<(), String> {
+    match Dropped::load(path, &viewer::appearance::rig(&HUMANOID)).map_err(told)? {
+        Dropped::Pack(pack) => steer(&mut Controller::new(pack)),
+        Dropped::Mesh(mesh) => {
+            let bodies = HUMANOID.skeleton().body_count();
+            let (positions, rotations) = (vec![glam::Vec3::ZERO; bodies], vec![glam::Quat::IDENTITY; bodies]);
+            mesh.palette_into(&positions, &rotations, &mut Vec::new());
+        }
+    }
     Ok(())
 }
 
@@ -77,14 +124,14 @@ fn mjcf(path: &Path) -> Result<(), String> {
     Ok(())
 }
 
-fn dump(path: &Path) -> Result<(), String> {
-    walk_on(Dump::load(path).map_err(told)?.to_character().map_err(told)?);
+fn replay_file(path: &Path) -> Result<(), String> {
+    walk_on(ReplayFile::load(path).map_err(told)?.to_character().map_err(told)?);
     Ok(())
 }
 
 /// A few ticks; physics may diverge.
 fn walk_on(mut character: Character) {
-    let mut state = CharacterState::default();
+    let mut state = CharacterState::new(character.model().skeleton());
     for _ in 0..10 {
         if character.step().is_err() {
             return;
@@ -93,12 +140,12 @@ fn walk_on(mut character: Character) {
     }
 }
 
-fn poses(path: &Path) -> Result<(), String> {
-    viewer::poses::Poses::load(path).map(drop).map_err(told)
+fn pose_clip(path: &Path) -> Result<(), String> {
+    PoseClip::load(path, HUMANOID.skeleton().joint_count() + 7).map(drop).map_err(told)
 }
 
 fn layout(path: &Path) -> Result<(), String> {
-    Layout::load(path).map(drop).map_err(told)
+    PanelLayout::load(path).map(drop).map_err(told)
 }
 
 fn script(path: &Path) -> Result<(), String> {
@@ -131,12 +178,16 @@ fn descriptor(path: &Path) -> Result<(), String> {
 
 fn recipe(path: &Path) -> Result<(), String> {
     let recipe = Recipe::load(path).map_err(told)?;
-    let _ = recipe.environment_at(recipe.total_samples());
+    let _ = (recipe.phase_at(recipe.total_samples()), recipe.first(), recipe.last());
     Ok(())
 }
 
 fn plan(path: &Path) -> Result<(), String> {
-    trainer::pack::PackPlan::load(path).map(drop).map_err(told)
+    PackPlan::load(path).map(drop).map_err(told)
+}
+
+fn lineage(path: &Path) -> Result<(), String> {
+    Lineage::load(path).map(drop).map_err(told)
 }
 
 fn checkpoint(path: &Path) -> Result<(), String> {
@@ -144,7 +195,7 @@ fn checkpoint(path: &Path) -> Result<(), String> {
 }
 
 fn normalisers(path: &Path) -> Result<(), String> {
-    trainer::normaliser_file::load(path).map(drop).map_err(told)
+    trainer::normaliser_file::load(path, HUMANOID.skeleton()).map(drop).map_err(told)
 }
 
 fn clip(path: &Path) -> Result<(), String> {

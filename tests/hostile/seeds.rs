@@ -5,8 +5,10 @@ use std::path::{Path, PathBuf};
 
 use gamepad::recording::{PadEvent, RecordedPad, Recorder};
 use gamepad::{Bus, PadId};
+use integration_tests::{DT_SECS, HUMANOID_MJCF, QUADRUPED_MJCF, made_up, reference_pack};
 use physics_bridge::{Character, Model};
-use viewer::app::Layout;
+use policy_core::{CharacterState, Command, Controller, ControllerState};
+use viewer::app::PanelLayout;
 
 /// Report descriptor of a pad with four axes and twelve buttons.
 const DESCRIPTOR: &[u8] = &[
@@ -29,7 +31,10 @@ pub fn write(folder: &Path) {
         fs::copy(&path, to.join(name)).unwrap_or_else(|error| panic!("copy {}: {error}", path.display()));
     };
     copy("pack", root.join("tests/golden/reference.pack.safetensors"));
-    copy("mesh", assets.join("humanoid.glb"));
+    copy("dropped", assets.join("humanoid.glb"));
+    copy("dropped", root.join("tests/golden/reference.pack.safetensors"));
+    copy("mjcf", root.join("tests/assets/quadruped.xml"));
+    copy("lineage", assets.join("recipes/lineage/humanoid.toml"));
     copy("mjcf", assets.join("humanoid.xml"));
     copy("plan", assets.join("recipes/pack/humanoid.toml"));
     for (reader, ending, from) in [
@@ -48,11 +53,11 @@ pub fn write(folder: &Path) {
     for ending in ["json", "npy", "txt"] {
         files(&root.join("tests/hostile/seeds/clip"), ending).into_iter().for_each(|path| copy("clip", path));
     }
-    write_made(folder, &assets);
+    write_made(folder);
 }
 
 /// Sound files that only the libraries can write.
-fn write_made(folder: &Path, assets: &Path) {
+fn write_made(folder: &Path) {
     let make = |reader: &str, name: &str, bytes: &[u8]| {
         fs::create_dir_all(folder.join(reader)).expect("the folder of a reader can be made");
         fs::write(folder.join(reader).join(name), bytes).expect("a sound file can be written");
@@ -60,15 +65,49 @@ fn write_made(folder: &Path, assets: &Path) {
     make("descriptor", "pad.bin", DESCRIPTOR);
     make("recording", "dualsense.pad", &recording(0x054c, 0x0ce6, Vec::new()));
     make("recording", "generic.pad", &recording(0x1234, 0x5678, DESCRIPTOR.to_vec()));
-    let mjcf = fs::read_to_string(assets.join("humanoid.xml")).expect("the model is there");
-    let character = Character::new(&Model::from_mjcf(&mjcf).expect("the model compiles"));
-    make("dump", "fallen.json", &character.dump().to_bytes());
-    let qpos = serde_json::to_string(&[character.pose().qpos.to_vec(), character.pose().qpos.to_vec()])
-        .expect("numbers are JSON");
+    // Version 2 without its checksum, which would hide everything behind it.
+    let quadruped = Model::from_mjcf(QUADRUPED_MJCF).expect("the quadruped compiles");
+    make(
+        "pack",
+        "quadruped.pack.safetensors",
+        &without_checksum(&made_up::pack(&quadruped, QUADRUPED_MJCF).to_bytes()),
+    );
+    make("state", "walking.state", &state());
+    let character = Character::new(&Model::from_mjcf(HUMANOID_MJCF).expect("the humanoid compiles"));
+    make("replay_file", "standing.json", &character.replay_file().to_bytes());
+    let qpos = character.pose().qpos;
+    let qpos = serde_json::to_string(&[&qpos, &qpos, &qpos]).expect("numbers are JSON");
     let poses = format!("{{\"format\":\"policy-space poses\",\"clip\":\"still\",\"hz\":30,\"qpos\":{qpos}}}");
-    make("poses", "still.json", poses.as_bytes());
+    make("pose_clip", "still.json", poses.as_bytes());
     let layout = folder.join("layout/layout.ron");
-    Layout::default().save(&layout).expect("a layout can be written");
+    PanelLayout::default().save(&layout).expect("a layout can be written");
+}
+
+/// A pack whose manifest has no checksum. The header keeps its length, so that the tensors keep their places.
+fn without_checksum(pack: &[u8]) -> Vec<u8> {
+    let mark = br#"\"checksum\":\""#;
+    let at = pack
+        .windows(mark.len())
+        .position(|bytes| bytes == mark)
+        .expect("a pack that is written has a checksum");
+    // The field, its eight digits, the closing quote and the comma make way for spaces.
+    let mut out = pack.to_vec();
+    out[at..at + mark.len() + 8 + 3].fill(b' ');
+    out
+}
+
+/// A controller's state after some ticks.
+fn state() -> Vec<u8> {
+    let pack = reference_pack();
+    let mut body = CharacterState::new(pack.skeleton());
+    body.bodies.iter_mut().for_each(|body| body.position.z = 0.9);
+    let mut controller = Controller::new(pack.clone());
+    (0..20).for_each(|_| drop(controller.tick(&body, &Command::default(), DT_SECS).to_vec()));
+    let mut state = ControllerState::new(&pack);
+    controller.save_into(&mut state);
+    let mut bytes = vec![0; state.byte_len()];
+    state.write_bytes(&mut bytes);
+    bytes
 }
 
 fn recording(vendor: u16, product: u16, descriptor: Vec<u8>) -> Vec<u8> {
