@@ -159,3 +159,59 @@ fn numbers_that_make_no_sense_are_refused() {
     let said = SkinnedMesh::from_bytes(&glb(&document, &binary)).unwrap_err().to_string();
     assert!(said.contains("65535"), "{said}");
 }
+
+#[test]
+fn an_attribute_beyond_the_accessors_is_refused() {
+    for name in ["POSITION", "NORMAL", "WEIGHTS_0"] {
+        let said = refused(|d| d["meshes"][0]["primitives"][0]["attributes"][name] = 9_999.into());
+        assert!(said.contains("expected accessors below") && said.contains("9999"), "{said}");
+    }
+}
+
+#[test]
+fn a_header_that_is_shorter_than_itself_is_refused() {
+    for length in [0_u32, 4, 11] {
+        let mut bytes = HUMANOID_GLB.to_vec();
+        bytes[8..12].copy_from_slice(&length.to_le_bytes());
+        let said = SkinnedMesh::from_bytes(&bytes).unwrap_err().to_string();
+        assert!(said.contains("12") && said.contains(&length.to_string()), "{said}");
+    }
+}
+
+#[test]
+fn many_primitives_of_one_accessor_are_refused_before_they_are_read() {
+    let said = refused(|d| {
+        let primitive = d["meshes"][0]["primitives"][0].clone();
+        d["meshes"][0]["primitives"] = vec![primitive; 2_000].into();
+    });
+    assert!(said.contains("expected at most 2000000 vertices"), "{said}");
+}
+
+#[test]
+fn every_number_of_the_document_may_be_anything() {
+    let (document, binary) = parts();
+    let paths = numbers(&document, String::new());
+    // Every 7th number, so that the test stays short; the places differ from value to value.
+    for (start, value) in [0_i64, -1, 5, 255, 65_535, 4_294_967_295, i64::MAX].into_iter().enumerate() {
+        for path in paths.iter().skip(start).step_by(7) {
+            let mut changed = document.clone();
+            *changed.pointer_mut(path).unwrap() = value.into();
+            // Some changes do no harm; none may panic.
+            let _ = SkinnedMesh::from_bytes(&glb(&changed, &binary));
+        }
+    }
+}
+
+/// JSON pointers to the numbers of a document.
+fn numbers(value: &serde_json::Value, path: String) -> Vec<String> {
+    match value {
+        serde_json::Value::Number(_) => vec![path],
+        serde_json::Value::Array(all) => {
+            all.iter().enumerate().flat_map(|(i, v)| numbers(v, format!("{path}/{i}"))).collect()
+        }
+        serde_json::Value::Object(all) => {
+            all.iter().flat_map(|(k, v)| numbers(v, format!("{path}/{k}"))).collect()
+        }
+        _ => Vec::new(),
+    }
+}

@@ -14,9 +14,9 @@ pub enum MeshError {
         /// What is wrong.
         source: Box<MeshError>,
     },
-    /// The file can't be read.
-    #[error("cannot read: {0}")]
-    Read(std::io::Error),
+    /// The file can't be read, or is too large.
+    #[error(transparent)]
+    Read(#[from] crate::files::ReadError),
     /// The bytes are no glTF 2.0.
     #[error("expected glTF 2.0 binary (.glb), found: {0}")]
     Parse(gltf::Error),

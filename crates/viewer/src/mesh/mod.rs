@@ -8,6 +8,7 @@
 mod binding;
 mod error;
 mod load;
+mod parse;
 mod primitive;
 mod read;
 
@@ -17,12 +18,17 @@ use bytemuck::{Pod, Zeroable};
 use glam::{Affine3A, Mat3A, Quat, Vec3};
 use policy_core::Body;
 
+use crate::files;
 pub use error::MeshError;
 
 /// Most vertices a mesh may have, all levels together.
 pub const MAX_VERTICES: usize = 2_000_000;
+/// Most indices a mesh may have, all levels together.
+pub const MAX_INDICES: usize = 6 * MAX_VERTICES;
 /// Most joints a mesh may have.
 pub const MAX_JOINTS: usize = 256;
+/// Largest `.glb` that is read, bytes.
+pub const MAX_MESH_BYTES: u64 = 64 << 20;
 
 /// A vertex as the vertex buffer holds it.
 #[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
@@ -100,15 +106,15 @@ impl SkinnedMesh {
     /// When it can't be read, and as [`SkinnedMesh::from_bytes`]; the message names the file.
     pub fn load(path: &Path) -> Result<Self, MeshError> {
         let in_file = |source| MeshError::File { path: path.to_owned(), source: Box::new(source) };
-        let bytes = std::fs::read(path).map_err(|error| in_file(MeshError::Read(error)))?;
+        let bytes = files::read(path, MAX_MESH_BYTES).map_err(|error| in_file(error.into()))?;
         Self::from_bytes(&bytes).map_err(in_file)
     }
 
     /// Reads the bytes of a `.glb` file.
     ///
     /// # Errors
-    /// When they are no glTF binary, when bodies, skin or normals are missing, when a count or index is out of
-    /// range or a number is not finite.
+    /// When they are no glTF binary or more than [`MAX_MESH_BYTES`], when bodies, skin or normals are missing, when
+    /// a count or index is out of range or a number is not finite.
     pub fn from_bytes(bytes: &[u8]) -> Result<Self, MeshError> {
         load::load(bytes)
     }
