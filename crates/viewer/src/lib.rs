@@ -16,6 +16,7 @@ mod panels;
 pub mod poses;
 pub mod recorder;
 pub mod render;
+pub mod signals;
 pub mod sim;
 pub mod stage;
 pub mod text;

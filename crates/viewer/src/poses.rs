@@ -2,12 +2,14 @@
 //! them; what becomes of the bodies is the physics' forward kinematics.
 
 use std::fmt;
-use std::io::Read as _;
 use std::path::{Path, PathBuf};
 
 use physics_bridge::{PoseError, QPOS_LEN};
 use serde::Deserialize;
 use serde::de::{self, DeserializeSeed, Deserializer, SeqAccess, Unexpected, Visitor};
+
+use crate::files;
+use crate::text::cut;
 
 /// First field of every such file.
 pub const POSES_FORMAT: &str = "policy-space poses";
@@ -29,19 +31,13 @@ const LONGEST_MESSAGE: usize = 300;
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum PosesError {
-    /// The file can't be read.
+    /// The file can't be read, or is too large.
     #[error("poses {}: {source}", path.display())]
     File {
         /// The file.
         path: PathBuf,
         /// Why.
-        source: std::io::Error,
-    },
-    /// The file is too large.
-    #[error("poses {}: expected at most {MOST_BYTES} bytes, found more", path.display())]
-    Size {
-        /// The file.
-        path: PathBuf,
+        source: files::ReadError,
     },
     /// The text is no file of poses.
     #[error("poses {}: {message}", path.display())]
@@ -87,17 +83,12 @@ impl Poses {
     /// # Errors
     /// When it can't be read, is too large, or is no file of poses; the message names the field.
     pub fn load(path: &Path) -> Result<Self, PosesError> {
-        let file = |source| PosesError::File { path: path.to_owned(), source };
         let text = |message: String| PosesError::Text {
             path: path.to_owned(),
             message: cut(&message, LONGEST_MESSAGE),
         };
-        let mut bytes = Vec::new();
-        let opened = std::fs::File::open(path).map_err(file)?;
-        opened.take(MOST_BYTES + 1).read_to_end(&mut bytes).map_err(file)?;
-        if bytes.len() as u64 > MOST_BYTES {
-            return Err(PosesError::Size { path: path.to_owned() });
-        }
+        let bytes = files::read(path, MOST_BYTES)
+            .map_err(|source| PosesError::File { path: path.to_owned(), source })?;
         let poses: Self = serde_json::from_slice(&bytes).map_err(|e| text(e.to_string()))?;
         let seconds = poses.qpos.len() as f64 / poses.hz;
         if seconds > MOST_SECS {
@@ -109,12 +100,6 @@ impl Poses {
         }
         Ok(poses)
     }
-}
-
-/// At most so many characters of a text that may hold a part of the file.
-fn cut(text: &str, most: usize) -> String {
-    let head: String = text.chars().take(most).collect();
-    if head.len() < text.len() { head + " ..." } else { head }
 }
 
 fn format<'de, D: Deserializer<'de>>(deserializer: D) -> Result<String, D::Error> {

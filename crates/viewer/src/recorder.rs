@@ -6,8 +6,10 @@ use std::process::{Child, Command, Stdio};
 use std::sync::mpsc::{Receiver, SyncSender, TrySendError, sync_channel};
 use std::thread::JoinHandle;
 
-use image::RgbaImage;
 use image::imageops::FilterType;
+use image::{ImageFormat, RgbaImage};
+
+use crate::files;
 
 /// Frames that may wait for the disk; more are dropped.
 const WAITING: usize = 8;
@@ -17,7 +19,7 @@ const WAITING: usize = 8;
 #[non_exhaustive]
 pub enum RecorderError {
     /// The folder or a file can't be made.
-    #[error("{}: {source}", path.display())]
+    #[error("cannot write {}: {source}", path.display())]
     File {
         /// The path.
         path: PathBuf,
@@ -144,12 +146,13 @@ impl Recorder {
 /// Writes one picture.
 ///
 /// # Errors
-/// When its folder can't be made or it can't be written.
+/// When its folder can't be made or it can't be written; no part of it is left then.
 pub fn save(picture: &RgbaImage, path: &Path) -> Result<(), RecorderError> {
-    if let Some(folder) = path.parent() {
-        folder_at(folder)?;
-    }
-    picture.save(path).map_err(|source| RecorderError::Picture { path: path.to_owned(), source })
+    let mut bytes = std::io::Cursor::new(Vec::new());
+    picture
+        .write_to(&mut bytes, ImageFormat::Png)
+        .map_err(|source| RecorderError::Picture { path: path.to_owned(), source })?;
+    files::write(path, bytes.get_ref()).map_err(|source| RecorderError::File { path: path.to_owned(), source })
 }
 
 fn folder_at(path: &Path) -> Result<(), RecorderError> {

@@ -10,12 +10,13 @@ use winit::event::WindowEvent;
 use winit::event_loop::{ActiveEventLoop, ControlFlow, EventLoop};
 use winit::window::{Window, WindowId};
 
-use crate::app::App;
+use crate::app::{App, KeptLayout};
 use crate::cli::Demo;
 use crate::desk::Desk;
 use crate::gpu::{Gpu, GpuError};
 use crate::mesh::SkinnedMesh;
 use crate::pads::Pads;
+use crate::signals;
 
 /// A device that is lost twice within this time will be lost again.
 const LOSSES_APART: Duration = Duration::from_secs(10);
@@ -29,9 +30,9 @@ pub fn run(demo: &Demo, app: App, mesh: SkinnedMesh, layout: Option<PathBuf>) ->
     events.set_control_flow(ControlFlow::Poll);
     let pads = if demo.no_pad { None } else { Some(Pads::start()) };
     let mut host = Host {
-        app,
         pads,
-        layout,
+        layout: layout.map(|path| KeptLayout::new(path, &app.layout)),
+        app,
         mesh: Some(mesh),
         size: demo.size,
         trace: demo.trace,
@@ -43,8 +44,8 @@ pub fn run(demo: &Demo, app: App, mesh: SkinnedMesh, layout: Option<PathBuf>) ->
     if let Some(stage) = host.stage {
         stage.desk.finish();
     }
-    if let Some(path) = &host.layout {
-        host.app.layout.save(path)?;
+    if let Some(kept) = &mut host.layout {
+        kept.keep(&host.app.layout)?;
     }
     host.failed.map_or(Ok(()), Err)
 }
@@ -53,7 +54,7 @@ pub fn run(demo: &Demo, app: App, mesh: SkinnedMesh, layout: Option<PathBuf>) ->
 struct Host {
     app: App,
     pads: Option<Pads>,
-    layout: Option<PathBuf>,
+    layout: Option<KeptLayout>,
     mesh: Option<SkinnedMesh>,
     size: [u32; 2],
     trace: bool,
@@ -130,7 +131,13 @@ impl ApplicationHandler for Host {
         }
     }
 
-    fn about_to_wait(&mut self, _: &ActiveEventLoop) {
+    fn about_to_wait(&mut self, events: &ActiveEventLoop) {
+        if signals::received().is_some() {
+            return events.exit();
+        }
+        if let Some(Err(error)) = self.layout.as_mut().map(|kept| kept.keep(&self.app.layout)) {
+            self.app.notice = Some(error.to_string());
+        }
         if let Some(stage) = &self.stage {
             stage.window.request_redraw();
         }

@@ -6,6 +6,7 @@ use serde::{Deserialize, Serialize};
 
 use super::{PanelKind, Preset, Side};
 use crate::camera::CameraMode;
+use crate::files;
 use crate::stage::Shown;
 
 /// Version of the file.
@@ -60,7 +61,7 @@ pub enum LayoutError {
         /// The file.
         path: PathBuf,
         /// Why.
-        source: std::io::Error,
+        source: files::ReadError,
     },
     /// The text is no layout.
     #[error("layout {}: {message}", path.display())]
@@ -104,15 +105,11 @@ impl Layout {
     pub fn load(path: &Path) -> Result<Self, LayoutError> {
         let file = |source| LayoutError::File { path: path.to_owned(), source };
         let text = |message| LayoutError::Text { path: path.to_owned(), message };
-        match std::fs::metadata(path) {
-            Err(error) if error.kind() == std::io::ErrorKind::NotFound => return Ok(Self::default()),
-            Err(error) => return Err(file(error)),
-            Ok(meta) if meta.len() > MOST_BYTES => {
-                return Err(text(format!("expected at most {MOST_BYTES} bytes, found {}", meta.len())));
-            }
-            Ok(_) => {}
+        if !path.exists() {
+            return Ok(Self::default());
         }
-        let content = std::fs::read_to_string(path).map_err(file)?;
+        let bytes = files::read(path, MOST_BYTES).map_err(file)?;
+        let content = String::from_utf8(bytes).map_err(|e| text(e.to_string()))?;
         let versioned: Versioned = ron::from_str(&content).map_err(|e| text(e.to_string()))?;
         if versioned.version != LAYOUT_VERSION {
             return Err(LayoutError::Version { path: path.to_owned(), found: versioned.version });
@@ -125,14 +122,11 @@ impl Layout {
     /// # Errors
     /// When that fails.
     pub fn save(&self, path: &Path) -> Result<(), LayoutError> {
-        let file = |source| LayoutError::File { path: path.to_owned(), source };
-        if let Some(folder) = path.parent() {
-            std::fs::create_dir_all(folder).map_err(file)?;
-        }
         let pretty = ron::ser::to_string_pretty(self, ron::ser::PrettyConfig::default());
         let content =
             pretty.map_err(|e| LayoutError::Text { path: path.to_owned(), message: e.to_string() })?;
-        std::fs::write(path, content).map_err(file)
+        files::write(path, content.as_bytes())
+            .map_err(|source| LayoutError::File { path: path.to_owned(), source: source.into() })
     }
 
     /// The side of an open panel.
@@ -162,6 +156,33 @@ impl Layout {
     }
 }
 
+/// A layout that is written whenever it has changed, so that nothing is lost when the program is killed.
+#[derive(Clone, Debug)]
+pub struct KeptLayout {
+    path: PathBuf,
+    kept: Layout,
+}
+
+impl KeptLayout {
+    /// Keeps changes from `layout` on in the file `path`.
+    #[must_use]
+    pub fn new(path: PathBuf, layout: &Layout) -> Self {
+        Self { path, kept: layout.clone() }
+    }
+
+    /// Writes `layout` when it has changed since the last call.
+    ///
+    /// # Errors
+    /// When it can't be written. The next change is tried again.
+    pub fn keep(&mut self, layout: &Layout) -> Result<(), LayoutError> {
+        if *layout == self.kept {
+            return Ok(());
+        }
+        self.kept = layout.clone();
+        layout.save(&self.path)
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -184,6 +205,19 @@ mod tests {
     }
 
     #[test]
+    fn a_change_is_written_at_once() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("layout.ron");
+        let mut layout = Layout::default();
+        let mut kept = KeptLayout::new(path.clone(), &layout);
+        kept.keep(&layout).unwrap();
+        assert!(!path.exists(), "nothing has changed");
+        layout.presets.push(Preset { name: "x".into(), from: "a".into(), to: "b".into(), t: [0.5; 3] });
+        kept.keep(&layout).unwrap();
+        assert_eq!(Layout::load(&path).unwrap(), layout);
+    }
+
+    #[test]
     fn another_version_and_nonsense_are_refused_by_name() {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("layout.ron");
@@ -194,6 +228,7 @@ mod tests {
         std::fs::write(&path, "(version: 1, oben: 3)").unwrap();
         assert!(matches!(Layout::load(&path), Err(LayoutError::Text { .. })));
         std::fs::write(&path, [0xff, 0xfe, 0]).unwrap();
-        assert!(matches!(Layout::load(&path), Err(LayoutError::File { .. })));
+        assert!(matches!(Layout::load(&path), Err(LayoutError::Text { .. })));
+        assert!(matches!(Layout::load(folder.path()), Err(LayoutError::File { .. })));
     }
 }

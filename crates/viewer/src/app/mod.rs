@@ -28,7 +28,7 @@ pub use clock::Clock;
 pub use command::{Record, ViewerCommand};
 pub use keys::{KEYS, Keys, PAD};
 pub use layers::{Layers, Preset};
-pub use layout::{LAYOUT_VERSION, Layout, LayoutError};
+pub use layout::{KeptLayout, LAYOUT_VERSION, Layout, LayoutError};
 pub use panel_kind::{PanelKind, Side};
 pub use pick::Grab;
 pub use plots::{Plots, Series};

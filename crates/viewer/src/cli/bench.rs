@@ -33,11 +33,11 @@ struct Mind {
     spent: Duration,
 }
 
-/// Characters that run in real time with controllers, and without: the fastest round of each.
+/// Characters that run in real time with controllers, and without: the fastest round of each, as text.
 ///
 /// # Errors
 /// When the pack or the humanoid is broken.
-pub fn crowd(bench: Bench) -> anyhow::Result<()> {
+pub fn crowd(bench: Bench) -> anyhow::Result<String> {
     let pack = load::pack(None)?;
     let model = Model::from_mjcf(assets::HUMANOID_MJCF)?;
     let walk = pack.graph().node_named("walk").context("the pack has no policy called walk")?;
@@ -98,32 +98,36 @@ pub fn crowd(bench: Bench) -> anyhow::Result<()> {
     if bench.json {
         let object =
             json!({ "characters_realtime": full, "bare_mujoco_characters": bare, "policy_share": share });
-        println!("{object}");
-    } else {
-        println!("characters in real time, 30 Hz control, 120 Hz physics, {} threads", crowd.threads());
-        println!("  with controllers     {full:8.0}");
-        println!("  stepping alone       {bare:8.0}   ({:.1} %)", 100.0 * full / bare);
-        println!("  share of the policy  {:8.2} %", 100.0 * share);
+        return Ok(object.to_string());
     }
-    Ok(())
+    Ok(format!(
+        "characters in real time, 30 Hz control, 120 Hz physics, {} threads
+  with controllers     {full:8.0}
+  stepping alone       {bare:8.0}   ({:.1} %)
+  share of the policy  {:8.2} %",
+        crowd.threads(),
+        100.0 * full / bare,
+        100.0 * share,
+    ))
 }
 
-/// Pictures a second off screen at 1280x720.
+/// Pictures a second off screen at 1280x720, as text.
 ///
 /// # Errors
 /// When there is nothing to draw with.
-pub fn frame(bench: Bench) -> anyhow::Result<()> {
+pub fn frame(bench: Bench) -> anyhow::Result<String> {
     let gpu = Gpu::off_screen()?;
     let one = frames_per_second(&gpu, 1)?;
     let hundred = frames_per_second(&gpu, 100)?;
     if bench.json {
-        println!("{}", json!({ "fps_1": one, "fps_100": hundred, "adapter": gpu.adapter_name }));
-    } else {
-        println!("pictures a second at 1280x720, 4x MSAA, drawn by {}", gpu.adapter_name);
-        println!("  1 character     {one:8.1}");
-        println!("  100 characters  {hundred:8.1}");
+        return Ok(json!({ "fps_1": one, "fps_100": hundred, "adapter": gpu.adapter_name }).to_string());
     }
-    Ok(())
+    Ok(format!(
+        "pictures a second at 1280x720, 4x MSAA, drawn by {}
+  1 character     {one:8.1}
+  100 characters  {hundred:8.1}",
+        gpu.adapter_name,
+    ))
 }
 
 fn frames_per_second(gpu: &Gpu, characters: usize) -> anyhow::Result<f64> {

@@ -5,16 +5,19 @@ use std::time::Instant;
 
 use anyhow::{Context as _, bail};
 
-use super::Demo;
 use super::open::open;
+use super::{Demo, MOST_SECS};
 use super::pad_input::PadInput;
 use super::report::Report;
 use crate::analysis::Analysis;
 use crate::app::App;
 use crate::desk::Desk;
+use crate::files;
 use crate::gpu::Gpu;
 use crate::mesh::SkinnedMesh;
+use crate::recorder;
 use crate::render::{OffScreen, RenderConfig};
+use crate::signals::{self, Signal};
 use crate::sim::{Blowup, LIE_SECS, Playback, TICK_SECS};
 
 /// Runs the demo without a window.
@@ -25,7 +28,7 @@ pub fn run(demo: &Demo) -> anyhow::Result<Report> {
     let report = Headless::through(demo)?.report();
     if let Some(path) = &demo.report {
         let text = serde_json::to_string_pretty(&report).context("report")? + "\n";
-        write(path, text.as_bytes())?;
+        files::write(path, text.as_bytes()).with_context(|| format!("cannot write {}", path.display()))?;
     }
     Ok(report)
 }
@@ -65,6 +68,7 @@ struct Headless<'a> {
     app: App,
     input: PadInput,
     seconds: f64,
+    ended_by: Option<Signal>,
     painter: Option<Painter>,
     blowups: usize,
     dumps: Vec<String>,
@@ -76,6 +80,11 @@ impl<'a> Headless<'a> {
         let mut run = Self::new(demo)?;
         let ticks = (run.seconds / f64::from(TICK_SECS)).round().max(1.0) as u64;
         for tick in 0..ticks {
+            run.ended_by = signals::received();
+            if run.ended_by.is_some() {
+                run.seconds = tick as f64 * f64::from(TICK_SECS);
+                break;
+            }
             run.tick(tick)?;
         }
         Ok(run)
@@ -87,6 +96,9 @@ impl<'a> Headless<'a> {
         let mut app = opened.app;
         let clip = app.sim.playback().map(Playback::duration);
         let seconds = demo.seconds.or(clip).or(input.duration()).unwrap_or(10.0);
+        if seconds > MOST_SECS {
+            bail!("expected a script or recording of at most {MOST_SECS} s, found {seconds} s; --seconds plays a part");
+        }
         if let Some(complaint) = app.notice.take() {
             bail!("{complaint}");
         }
@@ -97,7 +109,7 @@ impl<'a> Headless<'a> {
             Some(folder) => Some(Painter::new(demo, folder, opened.mesh, &mut app)?),
             None => None,
         };
-        Ok(Self { demo, app, input, seconds, painter, blowups: 0, dumps: Vec::new() })
+        Ok(Self { demo, app, input, seconds, ended_by: None, painter, blowups: 0, dumps: Vec::new() })
     }
 
     fn tick(&mut self, tick: u64) -> anyhow::Result<()> {
@@ -147,7 +159,8 @@ impl<'a> Headless<'a> {
     fn report(self) -> Report {
         let totals = self.app.sim.totals();
         let characters = self.app.sim.actors().len();
-        let ticks = totals.character_ticks as f64;
+        // A run that a signal ended before its first tick has nothing to divide by.
+        let ticks = (totals.character_ticks as f64).max(1.0);
         let distance_m = totals.distance_m / characters as f64;
         let after_a_fall = match self.app.sim.pack().recovery() {
             Some(skill) => format!("the skill {} is started", self.app.sim.pack().skills()[skill].name),
@@ -155,6 +168,7 @@ impl<'a> Headless<'a> {
         };
         Report {
             seconds: self.seconds,
+            ended_by: self.ended_by.map(|signal| signal.name),
             characters,
             mode: self.demo.mode.name(),
             terrain: self.demo.terrain.name(),
@@ -166,7 +180,7 @@ impl<'a> Headless<'a> {
             stood_up: totals.stood_up,
             diverged: self.blowups,
             dumps: self.dumps,
-            mean_speed_mps: distance_m / self.seconds,
+            mean_speed_mps: distance_m / self.seconds.max(f64::from(TICK_SECS)),
             control_ticks_per_second: ticks / totals.whole.as_secs_f64().max(1e-9),
             policy_microseconds_per_tick: totals.policy.as_secs_f64() * 1e6 / ticks,
             state_hash: totals.hash.to_string(),
@@ -218,16 +232,8 @@ impl Painter {
         let picture = self.desk.picture(app, output, self.size, self.panels)?;
         app.plots.draw.push(start.elapsed().as_secs_f32() * 1e3);
         let path = self.folder.join(format!("frame_{:05}.png", self.drawn));
-        picture.save(&path).with_context(|| format!("cannot write {}", path.display()))?;
+        recorder::save(&picture, &path)?;
         self.drawn += 1;
         Ok(())
     }
-}
-
-fn write(path: &Path, bytes: &[u8]) -> anyhow::Result<()> {
-    if let Some(folder) = path.parent().filter(|p| !p.as_os_str().is_empty()) {
-        std::fs::create_dir_all(folder)
-            .with_context(|| format!("cannot make the folder {}", folder.display()))?;
-    }
-    std::fs::write(path, bytes).with_context(|| format!("cannot write {}", path.display()))
 }

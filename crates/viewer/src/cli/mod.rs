@@ -15,6 +15,7 @@ use policy_core::BlendMode;
 
 use crate::app::{App, PanelKind};
 use crate::sim::{GroundKind, MAX_CHARACTERS};
+use crate::text;
 
 /// Steer a physics-based humanoid by blending the parameters of tiny policies.
 #[derive(Debug, Parser)]
@@ -41,7 +42,8 @@ Examples:
   policy-space --poses walk.json
       a clip in a window, round and round; with --headless --frames out/ once, as pictures
 
-Exit status: 0 when it ran, 1 when it could not, 2 when the command line is wrong.";
+Exit status: 0 when it ran, 1 when it could not, 2 when the command line is wrong, 128 and the number of the
+signal when one ended it (130 after Ctrl+C); the report and the settings are written then too.";
 
 /// Tasks besides the demo.
 #[derive(Debug, Subcommand)]
@@ -146,15 +148,20 @@ pub struct Demo {
     pub trace: bool,
 }
 
+/// Longest run without a window, seconds.
+const MOST_SECS: f64 = 3600.0;
+/// Longest line of a trace, characters.
+const LONGEST_LINE: usize = 200;
+/// Most pixels of a picture: one takes about 45 bytes of memory.
+const MOST_PIXELS: u32 = 3840 * 2160;
+
 /// Writes one line of what the player does to standard error.
 pub fn trace(app: &App) {
     let player = app.sim.player();
     let position = player.report().position;
     let nodes = app.sim.pack().graph().nodes();
     let at = player.state.body(policy_core::Body::Pelvis).position;
-    // Where standard error is closed there is nobody to tell.
-    let _ = writeln!(
-        std::io::stderr(),
+    let line = format!(
         "tick {} {} {} {:.2} at {:.3} {:.3} {:.3} speed {:.2}{}",
         app.sim.ticks(),
         nodes[position.from].name,
@@ -166,20 +173,26 @@ pub fn trace(app: &App) {
         player.speed(),
         if player.is_down() { " down" } else { "" },
     );
+    // Where standard error is closed there is no other place for it.
+    let _ = writeln!(std::io::stderr(), "{}", text::printable(&line, LONGEST_LINE));
 }
 
 fn size(text: &str) -> Result<[u32; 2], String> {
     let parts = text.split_once('x').and_then(|(w, h)| Some([w.parse().ok()?, h.parse().ok()?]));
     match parts {
-        Some([w, h]) if (16..=8192).contains(&w) && (16..=8192).contains(&h) => Ok([w, h]),
-        _ => Err("expected WIDTHxHEIGHT, each 16 to 8192, such as 1280x720".into()),
+        Some([w, h]) if (16..=8192).contains(&w) && (16..=8192).contains(&h) && w * h <= MOST_PIXELS => {
+            Ok([w, h])
+        }
+        _ => Err(format!(
+            "expected WIDTHxHEIGHT, such as 1280x720, each 16 to 8192 and at most {MOST_PIXELS} pixels (3840x2160)"
+        )),
     }
 }
 
 fn seconds(text: &str) -> Result<f64, String> {
     match text.parse() {
-        Ok(seconds) if seconds > 0.0 && seconds <= 3600.0 => Ok(seconds),
-        _ => Err("expected a number above 0 and up to 3600".into()),
+        Ok(seconds) if seconds > 0.0 && seconds <= MOST_SECS => Ok(seconds),
+        _ => Err(format!("expected a number above 0 and up to {MOST_SECS}")),
     }
 }
 
@@ -237,6 +250,7 @@ mod tests {
         assert!(error(&["--terrain", "lava"]).contains("flat, wavy, steps"));
         assert!(error(&["--mode", "add"]).contains("parameters, actions, switch"));
         assert!(error(&["--size", "12x"]).contains("1280x720"));
+        assert!(error(&["--size", "8192x8192"]).contains("at most 8294400 pixels"));
         assert!(error(&["--characters", "0"]).contains("1 to 200"));
         assert!(error(&["--headless", "--seconds", "nan"]).contains("up to 3600"));
         assert!(error(&["--frobnicate"]).contains("--frobnicate"));

@@ -5,6 +5,7 @@ use gamepad::recording::{Recording, VirtualPad};
 use gamepad::{GamepadState, Script};
 
 use super::Demo;
+use crate::files;
 
 /// A pad that depends on time alone.
 pub enum PadInput {
@@ -22,6 +23,10 @@ impl PadInput {
     /// # Errors
     /// When a file can't be read or is no script or recording, or a recording's pad is not known.
     pub fn load(demo: &Demo) -> anyhow::Result<Self> {
+        for path in demo.script.iter().chain(&demo.recording) {
+            // A pipe that nothing is written to would be waited for without end.
+            files::check_regular(path).with_context(|| path.display().to_string())?;
+        }
         if let Some(path) = &demo.recording {
             let pad = VirtualPad::new(Recording::load(path)?).with_context(|| path.display().to_string())?;
             return Ok(Self::Recording(Box::new(pad)));

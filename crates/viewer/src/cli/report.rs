@@ -7,6 +7,8 @@ use serde::Serialize;
 pub struct Report {
     /// Simulated time.
     pub seconds: f64,
+    /// The signal that ended the run before its time.
+    pub ended_by: Option<&'static str>,
     /// Number of characters.
     pub characters: usize,
     /// Blend mode.
@@ -41,4 +43,25 @@ pub struct Report {
     pub frames: usize,
     /// What drew them.
     pub adapter: Option<String>,
+}
+
+impl Report {
+    /// The report in one line.
+    #[must_use]
+    pub fn summary(&self) -> String {
+        format!(
+            "{:.1} s, {}: upright {:.1} %, {:.2} m, {}, {:.2} m/s, state {}",
+            self.seconds,
+            count(self.characters as u64, "character"),
+            100.0 * self.upright_fraction,
+            self.distance_m,
+            count(self.falls, "fall"),
+            self.mean_speed_mps,
+            self.state_hash,
+        )
+    }
+}
+
+fn count(number: u64, what: &str) -> String {
+    format!("{number} {what}{}", if number == 1 { "" } else { "s" })
 }
