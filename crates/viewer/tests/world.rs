@@ -94,6 +94,34 @@ fn a_shove_comes_once_however_long_its_button_is_held() {
 }
 
 #[test]
+fn shoves_three_times_a_second_do_not_add_up() {
+    let mut held = FORWARD;
+    held.buttons.set(SHOVE_BUTTON, true);
+    let mut sim = simulation();
+    let (mut fastest, mut lowest) = (0.0_f32, f32::INFINITY);
+    for tick in 0..1800 {
+        let pad = if tick % 10 < 3 { &held } else { &FORWARD };
+        assert!(sim.tick(pad, Heading::FORWARD).is_empty(), "it blew up in tick {tick}");
+        let torso = sim.player().state.body(Body::Torso);
+        fastest = fastest.max(torso.linear_velocity.length());
+        lowest = lowest.min(torso.position.z);
+    }
+    assert!(fastest < 12.0 && lowest > -0.05, "{fastest} m/s, {lowest} m");
+}
+
+#[test]
+fn without_friction_it_slides_and_can_be_started_again() {
+    let mut sim = simulation();
+    let ice = Settings { friction: 0.0, ..sim.model().settings() };
+    sim.set_settings(ice).unwrap();
+    run(&mut sim, 150);
+    sim.reset();
+    run(&mut sim, 60);
+    sim.rewind_to(30);
+    run(&mut sim, 60);
+}
+
+#[test]
 fn what_is_out_of_range_changes_nothing() {
     let mut sim = simulation();
     let mut heavy = sim.model().settings();
@@ -114,10 +142,10 @@ fn picture(number: u8) -> RgbaImage {
 #[test]
 fn a_film_without_ffmpeg_is_an_animation_of_all_pictures() {
     let folder = tempfile::tempdir().unwrap();
-    let path = folder.path().join("film.png");
+    let path = folder.path().join("film.apng");
     let mut recorder = Recorder::start(Kind::Apng, path.clone(), [16, 8], 25);
     for number in 0..4 {
-        assert!(recorder.take(picture(number)));
+        assert!(recorder.take(picture(number), number.into()));
     }
     assert_eq!(recorder.finish().unwrap(), 0);
     let decoder = png::Decoder::new(std::io::BufReader::new(std::fs::File::open(&path).unwrap()));
@@ -136,14 +164,14 @@ fn a_sequence_is_numbered_and_a_bad_folder_is_an_error() {
     let folder = tempfile::tempdir().unwrap();
     let mut recorder = Recorder::start(Kind::Sequence, folder.path().join("a/b"), [16, 8], 25);
     for number in 0..3 {
-        assert!(recorder.take(picture(number)));
+        assert!(recorder.take(picture(number), number.into()));
     }
     recorder.finish().unwrap();
     assert_eq!(image::open(folder.path().join("a/b/frame_00002.png")).unwrap().to_rgba8(), picture(2));
     let taken = folder.path().join("taken");
     std::fs::write(&taken, b"").unwrap();
     let mut recorder = Recorder::start(Kind::Sequence, taken.join("c"), [16, 8], 25);
-    recorder.take(picture(0));
+    recorder.take(picture(0), 0);
     let error = recorder.finish().unwrap_err().to_string();
     assert!(error.contains("taken"), "{error}");
 }

@@ -11,7 +11,10 @@ use policy_core::{
     JointTargets, TickReport,
 };
 
-use super::{TICK_SECS, Totals};
+use super::{SHOVED_BELOW_MPS, TICK_SECS, Totals};
+
+/// A torso that is lower lies, metres above the ground; a crawl is higher.
+const SHOVED_ABOVE_M: f32 = 0.3;
 
 /// Reports kept for going back.
 const KEPT_REPORTS: usize = 301;
@@ -27,6 +30,8 @@ pub struct Actor {
     pub command: Command,
     /// Seconds it has lain with no skill to rise.
     pub(super) lay_secs: f32,
+    /// Seconds that the last shove still acts.
+    pub(super) shoved_secs: f32,
     /// Time its controller took in the last tick.
     pub(super) policy_time: Duration,
     poses: [BodyPoses; 2],
@@ -44,6 +49,7 @@ impl Actor {
             state: CharacterState::default(),
             command: Command::default(),
             lay_secs: 0.0,
+            shoved_secs: 0.0,
             policy_time: Duration::ZERO,
             poses: [BodyPoses::default(); 2],
             reports: VecDeque::with_capacity(KEPT_REPORTS),
@@ -86,6 +92,14 @@ impl Actor {
         report.fallen || (recovery.is_some() && report.skill.map(|s| s.skill) == recovery)
     }
 
+    /// False while a shove acts, and for a body that is down or fast.
+    pub(super) fn can_be_shoved(&self) -> bool {
+        let torso = self.state.body(Body::Torso);
+        let fast = torso.linear_velocity.length() > SHOVED_BELOW_MPS;
+        let down = torso.position.z - self.state.ground_height < SHOVED_ABOVE_M;
+        self.shoved_secs <= 0.0 && !fast && !down && !self.is_down()
+    }
+
     /// Poses `alpha` of the way from the last tick but one to the last.
     #[must_use]
     pub fn poses(&self, alpha: f32) -> BodyPoses {
@@ -120,6 +134,7 @@ impl Actor {
         self.was_down = down;
         let helpless = down && self.controller.pack().recovery().is_none();
         self.lay_secs = if helpless { self.lay_secs + TICK_SECS } else { 0.0 };
+        self.shoved_secs = (self.shoved_secs - TICK_SECS).max(0.0);
         totals.hash.absorb(&character.pose());
     }
 
@@ -128,7 +143,7 @@ impl Actor {
         self.controller.reset();
         self.reports.clear();
         self.reports.push_back(*self.controller.report());
-        (self.lay_secs, self.was_down, self.age) = (0.0, false, 0);
+        (self.lay_secs, self.shoved_secs, self.was_down, self.age) = (0.0, 0.0, false, 0);
         self.take_pose(character);
         self.poses[0] = self.poses[1];
     }

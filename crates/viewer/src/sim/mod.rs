@@ -73,6 +73,12 @@ const SHOVE_NEWTON: f32 = 1200.0;
 /// Length of a shove, seconds.
 const SHOVE_SECS: f32 = 0.2;
 
+/// A torso that is faster is not shoved, metres per second: above any gait.
+const SHOVED_BELOW_MPS: f32 = 5.0;
+
+/// Least factor on friction: ice. Contacts of less, down to none, make the physics diverge.
+pub const LEAST_FRICTION: f32 = 0.01;
+
 /// Characters, controllers and ground.
 #[derive(Debug)]
 pub struct Simulation {
@@ -138,7 +144,8 @@ impl Simulation {
         command
     }
 
-    /// A shove for everybody, away from the camera, when its button goes down.
+    /// A shove for every character, away from the camera, when the button goes down. One that is still being
+    /// shoved, lies or already flies gets none: shoves must not add up.
     fn shove(&mut self, pad: &GamepadState, camera: Heading) {
         let pressed = pad.buttons.pressed_since(self.shove_held);
         self.shove_held = pad.buttons;
@@ -146,9 +153,11 @@ impl Simulation {
             return;
         }
         let force = (camera.direction() * SHOVE_NEWTON).extend(0.0);
-        for character in self.crowd.characters_mut() {
-            // The force is within bounds; one that already has too many pushes does not need another.
-            let _ = character.push(Body::Torso, force, SHOVE_SECS);
+        for (actor, character) in self.actors.iter_mut().zip(self.crowd.characters_mut()) {
+            // The force is within the bounds of a push.
+            if actor.can_be_shoved() && character.push(Body::Torso, force, SHOVE_SECS).is_ok() {
+                actor.shoved_secs = SHOVE_SECS;
+            }
         }
     }
 
@@ -188,11 +197,12 @@ impl Simulation {
         }
     }
 
-    /// Goes on with other gravity, friction and strength.
+    /// Changes gravity, friction and strength. Friction below [`LEAST_FRICTION`] is raised to it.
     ///
     /// # Errors
     /// When a setting is out of its range; nothing is changed then.
     pub fn set_settings(&mut self, settings: Settings) -> Result<(), SimError> {
+        let settings = Settings { friction: settings.friction.max(LEAST_FRICTION), ..settings };
         let model = self.model.with_settings(settings)?;
         for character in self.crowd.characters_mut() {
             character.set_model(&model)?;
