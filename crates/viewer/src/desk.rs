@@ -1,11 +1,12 @@
 //! Puts a frame together: panels, picture, overlay, recording. The same for a window and off screen.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::time::{Instant, SystemTime};
 
 use image::RgbaImage;
 
 use crate::app::{App, Record};
+use crate::dropped::Dropped;
 use crate::gpu::{Gpu, GpuError};
 use crate::mesh::SkinnedMesh;
 use crate::overlay::{Overlay, Prepared};
@@ -81,12 +82,25 @@ impl Desk {
         let output = self.context.run_ui(input, |ui| app.ui(ui, around));
         app.plots.ui.push(start.elapsed().as_secs_f32() * 1e3);
         if let Some(path) = app.dropped.take() {
-            match SkinnedMesh::load(&path) {
-                Ok(mesh) => self.renderer.set_mesh(mesh),
-                Err(error) => app.notice = Some(error.to_string()),
-            }
+            self.open_dropped(app, &path);
         }
         output
+    }
+
+    /// Opens a file that was dropped on the window, and says what came of it.
+    fn open_dropped(&mut self, app: &mut App, path: &Path) {
+        let name = path.display();
+        app.notice = Some(match Dropped::load(path) {
+            Ok(Dropped::Mesh(mesh)) => {
+                self.renderer.set_mesh(*mesh);
+                format!("Now drawn: the mesh {name}")
+            }
+            Ok(Dropped::Pack(pack)) => {
+                app.set_pack(pack);
+                format!("Now steering: the pack {name}")
+            }
+            Err(error) => error.to_string(),
+        });
     }
 
     /// Takes up what a frame that is not drawn has changed.
@@ -183,7 +197,7 @@ impl Desk {
         let picture = self.capture(size, Some(prepared));
         let Some((recorder, _, taken)) = &mut self.recorder else { return };
         *taken = due + 1;
-        if !picture.is_ok_and(|p| recorder.take(p)) {
+        if !picture.is_ok_and(|p| recorder.take(p, due as u32)) {
             self.stop(app);
         }
     }
@@ -193,7 +207,7 @@ impl Desk {
         let path = match kind {
             Kind::Sequence => name("frames"),
             Kind::Mp4 => name("mp4"),
-            Kind::Apng => name("png"),
+            Kind::Apng => name("apng"),
         };
         app.recording = Some(path.display().to_string());
         self.recorder = Some((Recorder::start(kind, path, size, FILM_FPS), Instant::now(), 0));

@@ -6,6 +6,7 @@ pub mod assets;
 pub mod camera;
 pub mod cli;
 pub mod desk;
+pub mod dropped;
 pub mod files;
 pub mod gpu;
 pub mod mannequin;

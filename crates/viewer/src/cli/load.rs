@@ -7,11 +7,9 @@ use anyhow::Context as _;
 use policy_core::CharacterPack;
 
 use crate::assets;
+use crate::dropped::MAX_DROPPED_BYTES;
 use crate::files;
 use crate::mesh::SkinnedMesh;
-
-/// Largest pack that is read, bytes: the one inside has 5 MB, and a mesh may come with it.
-pub const MAX_PACK_BYTES: u64 = 128 << 20;
 
 /// The pack of a file, or the one inside.
 ///
@@ -22,7 +20,7 @@ pub fn pack(path: Option<&Path>) -> anyhow::Result<Arc<CharacterPack>> {
         let pack = CharacterPack::from_bytes(assets::HUMANOID_PACK).context("the pack inside the demo")?;
         return Ok(Arc::new(pack));
     };
-    let bytes = files::read(path, MAX_PACK_BYTES).with_context(|| format!("pack {}", path.display()))?;
+    let bytes = files::read(path, MAX_DROPPED_BYTES).with_context(|| format!("pack {}", path.display()))?;
     let pack = CharacterPack::from_bytes(&bytes).with_context(|| format!("pack {}", path.display()))?;
     Ok(Arc::new(pack))
 }
