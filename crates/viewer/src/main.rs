@@ -15,6 +15,9 @@ fn main() -> ExitCode {
     // Exits quietly on SIGPIPE, as when `head` has read enough.
     sigpipe::reset();
     let cli = Cli::parse();
+    if cli.demo.headless || cli.command.is_some() {
+        silence_device_selection();
+    }
     let ended = run(&cli);
     match (ended, signals::received()) {
         (Ok(()), None) => ExitCode::SUCCESS,
@@ -26,6 +29,15 @@ fn main() -> ExitCode {
             tell(&format!("error: {error:#}"));
             ExitCode::FAILURE
         }
+    }
+}
+
+/// Mesa's device selection asks the display for its graphics card, and complains on standard error where there is
+/// no session. Runs without a window have no display to ask.
+fn silence_device_selection() {
+    if std::env::var_os("XDG_RUNTIME_DIR").is_none() {
+        // SAFETY: `main` calls this before it starts any thread.
+        unsafe { std::env::set_var("NODEVICE_SELECT", "1") };
     }
 }
 
