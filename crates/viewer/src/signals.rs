@@ -40,7 +40,10 @@ pub fn watch() -> io::Result<()> {
 #[must_use]
 pub fn received() -> Option<Signal> {
     let number = RECEIVED.get()?.load(Ordering::Relaxed);
-    SIGNALS.iter().find(|(signal, _)| *signal as usize == number).map(|&(number, name)| Signal { number, name })
+    SIGNALS
+        .iter()
+        .find(|(signal, _)| *signal as usize == number)
+        .map(|&(number, name)| Signal { number, name })
 }
 
 /// A signal.

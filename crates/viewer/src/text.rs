@@ -24,7 +24,8 @@ pub fn printable(text: &str, most: usize) -> String {
 
 /// False for control characters and for those that turn the direction of the text.
 fn is_harmless(character: char) -> bool {
-    let turns = matches!(character, '\u{200e}'..='\u{200f}' | '\u{202a}'..='\u{202e}' | '\u{2066}'..='\u{2069}');
+    let turns =
+        matches!(character, '\u{200e}'..='\u{200f}' | '\u{202a}'..='\u{202e}' | '\u{2066}'..='\u{2069}');
     character == '\n' || !(character.is_control() || turns)
 }
 

@@ -21,6 +21,9 @@ use crate::signals;
 /// A device that is lost twice within this time will be lost again.
 const LOSSES_APART: Duration = Duration::from_secs(10);
 
+/// Least size of the window, pixels: the bar, one column of panels and a view beside it.
+const LEAST_SIZE: [u32; 2] = [800, 500];
+
 /// Runs the demo until its window is closed.
 ///
 /// # Errors
@@ -151,8 +154,13 @@ impl Stage {
         mesh: SkinnedMesh,
         app: &mut App,
     ) -> anyhow::Result<Self> {
+        // Who asks for a smaller window gets it.
+        let least = winit::dpi::PhysicalSize::new(size[0].min(LEAST_SIZE[0]), size[1].min(LEAST_SIZE[1]));
         let size = winit::dpi::PhysicalSize::new(size[0], size[1]);
-        let attributes = Window::default_attributes().with_title("Policy Space").with_inner_size(size);
+        let attributes = Window::default_attributes()
+            .with_title("Policy Space")
+            .with_inner_size(size)
+            .with_min_inner_size(least);
         let window = Arc::new(events.create_window(attributes).context("the system gives no window")?);
         Self::on(window, mesh, app)
     }

@@ -208,6 +208,152 @@ fn physics_pauses_steps_goes_back_and_changes_the_ground() {
 }
 
 #[test]
+fn play_goes_on_after_stepping_back_and_scrubbing() {
+    let mut harness = open(PanelKind::Physics);
+    for _ in 0..30 {
+        harness.state_mut().tick();
+    }
+    harness.run_steps(2);
+    for back in 1..=7 {
+        click(&mut harness, "Step back");
+        assert_eq!(harness.state().sim.history().1, back);
+    }
+    click(&mut harness, "Go on");
+    harness.run_steps(3);
+    assert!(!harness.state().clock.paused, "the slider has paused it again");
+    let before = harness.state().sim.ticks();
+    harness.state_mut().advance(0.2);
+    assert!(harness.state().sim.ticks() > before);
+}
+
+#[test]
+fn tab_leaves_the_keyboard_to_the_game() {
+    let mut harness = open(PanelKind::Physics);
+    for _ in 0..3 {
+        harness.key_press(egui::Key::Tab);
+        harness.run_steps(2);
+    }
+    harness.key_down(egui::Key::W);
+    harness.run_steps(2);
+    harness.state_mut().advance(0.2);
+    assert!(harness.state().input().left_stick[1] > 0.9, "{:?}", harness.state().input());
+    assert!(harness.state().layout.hidden, "three times Tab hides, shows and hides");
+}
+
+#[test]
+fn a_number_can_still_be_typed() {
+    let mut harness = open(PanelKind::Layers);
+    harness.run_steps(2);
+    harness.get_by_role_and_label(Role::TextInput, "Name").click();
+    harness.run_steps(2);
+    harness.key_down(egui::Key::W);
+    harness.run_steps(2);
+    harness.state_mut().advance(0.2);
+    assert_eq!(harness.state().input().left_stick, [0.0; 2], "the letter is for the text field");
+    // Escape leaves the field, and nothing else.
+    harness.key_press(egui::Key::Escape);
+    harness.run_steps(3);
+    assert!(!harness.state().leaving && !harness.state().quit);
+}
+
+#[test]
+fn escape_asks_before_it_leaves() {
+    let mut harness = open(PanelKind::Record);
+    let escape = |harness: &mut Harness<'_, App>| {
+        harness.key_press(egui::Key::Escape);
+        harness.run_steps(3);
+    };
+    escape(&mut harness);
+    assert!(harness.state().leaving && !harness.state().quit);
+    assert!(harness.query_by_role_and_label(Role::Button, "Stay (Esc)").is_some());
+    escape(&mut harness);
+    assert!(!harness.state().leaving && !harness.state().quit);
+    escape(&mut harness);
+    click(&mut harness, "Leave (Enter)");
+    assert!(harness.state().quit);
+}
+
+#[test]
+fn escape_closes_a_drop_down_and_nothing_else() {
+    let mut harness = open(PanelKind::Layers);
+    harness.run_steps(2);
+    harness.get_by_role_and_label(Role::ComboBox, "0 is").click();
+    harness.run_steps(3);
+    assert!(egui::Popup::is_any_open(&harness.ctx), "the drop-down is open");
+    harness.key_press(egui::Key::Escape);
+    harness.run_steps(3);
+    assert!(!egui::Popup::is_any_open(&harness.ctx));
+    assert!(!harness.state().leaving && !harness.state().quit);
+}
+
+#[test]
+fn a_trigger_takes_over_again_from_a_dragged_path() {
+    let mut app = app_with(PanelKind::Paths);
+    let speed = app.sim.pack().graph().path_named("speed").unwrap();
+    app.pad.state.left_stick = [0.0, 1.0];
+    app.pad.state.right_trigger = 0.5;
+    app.apply(viewer::app::ViewerCommand::Goal(Some(Goal::Path { path: speed, coordinate: 1.0 })));
+    app.tick();
+    assert!(app.sim.overrides.goal.is_some(), "a trigger that is held still is no wish");
+    app.pad.state.right_trigger = 0.1;
+    app.tick();
+    assert!(app.sim.overrides.goal.is_some(), "nor is one that is let go");
+    app.pad.state.right_trigger = 0.4;
+    app.tick();
+    assert_eq!(app.sim.overrides.goal, None);
+}
+
+#[test]
+fn the_status_line_says_what_the_layers_blend() {
+    let mut harness = open(PanelKind::Layers);
+    harness.state_mut().layers = viewer::app::Layers {
+        active: true,
+        automatic: false,
+        t: [0.25, 0.5, 1.0],
+        ..harness.state().layers.clone()
+    };
+    harness.state_mut().tick();
+    let place = viewer::app::place(harness.state());
+    assert_eq!(place, "layers: idle - walk 25, 50, 100 %");
+}
+
+#[test]
+fn help_fits_the_window() {
+    for size in [egui::vec2(1280.0, 720.0), egui::vec2(800.0, 500.0)] {
+        let mut app = app_with(PanelKind::Record);
+        app.help = true;
+        let mut harness =
+            Harness::builder().with_size(size).build_ui_state(|ui, app: &mut App| app.ui(ui, 0.0), app);
+        harness.run_steps(4);
+        let rect = harness.ctx.memory(|m| m.area_rect(egui::Id::unique("help"))).unwrap();
+        assert!(rect.top() >= 0.0 && rect.bottom() <= size.y, "{rect} in {size}");
+    }
+}
+
+#[test]
+fn panels_leave_a_view_however_small_the_window() {
+    for (width, least) in [(1280.0, 400.0), (800.0, 400.0), (640.0, 300.0), (320.0, 320.0)] {
+        let layout = viewer::app::Layout::default();
+        let app = App::new(common::simulation(), layout);
+        let mut harness = Harness::builder()
+            .with_size(egui::vec2(width, 480.0))
+            .build_ui_state(|ui, app: &mut App| app.ui(ui, 0.0), app);
+        harness.run_steps(3);
+        let free = harness.ctx.content_rect().width() - side_widths(&harness);
+        assert!(free >= least, "{width}: {free} are left");
+    }
+}
+
+/// Width of the columns of panels.
+fn side_widths(harness: &Harness<'_, App>) -> f32 {
+    let width = |id: &str| {
+        egui::containers::panel::PanelState::load(&harness.ctx, egui::Id::unique(id))
+            .map_or(0.0, |s| s.outer_rect.width())
+    };
+    width("left") + width("right")
+}
+
+#[test]
 fn the_view_panel_switches_what_is_shown_and_the_camera() {
     let mut harness = open(PanelKind::View);
     harness.run_steps(2);
@@ -314,4 +460,35 @@ fn dragging_a_body_pulls_it() {
     harness.drop_at(at);
     harness.run_steps(2);
     assert_eq!(harness.state().grab, None);
+}
+
+#[test]
+fn a_press_beside_a_limb_turns_the_camera_alone_and_one_on_it_pulls_alone() {
+    let mut app = app_with(PanelKind::Record);
+    app.layout.hidden = true;
+    app.clock.paused = true;
+    let screen = egui::vec2(900.0, 700.0);
+    let view = app.camera.view(0.0);
+    let on_screen = |point: glam::Vec3| {
+        let clip = view.clip_from_world(screen.x / screen.y).project_point3(point);
+        egui::pos2((clip.x * 0.5 + 0.5) * screen.x, (0.5 - clip.y * 0.5) * screen.y)
+    };
+    let arm = app.sim.player().poses(1.0).positions[policy_core::Body::LeftLowerArm.index()];
+    // The camera looks along x: 8 cm further to the left is beside the arm.
+    for (at, pulls) in [(on_screen(arm + glam::Vec3::Y * 0.08), false), (on_screen(arm), true)] {
+        let mut harness = harness(app_with(PanelKind::Record));
+        harness.state_mut().layout.hidden = true;
+        harness.state_mut().clock.paused = true;
+        harness.run_steps(2);
+        let yaw = harness.state().camera.yaw;
+        harness.drag_at(at);
+        harness.run_steps(2);
+        // Towards the body, so that the mouse is over it once it is a drag.
+        for step in 1..=6 {
+            harness.hover_at(at + egui::vec2(8.0 * step as f32, 0.0));
+            harness.run_steps(1);
+        }
+        let turned = (harness.state().camera.yaw - yaw).abs() > 1e-3;
+        assert_eq!((harness.state().grab.is_some(), turned), (pulls, !pulls), "at {at}");
+    }
 }

@@ -159,7 +159,9 @@ fn interrupted(folder: &Path, signal: &str) -> Output {
 #[cfg(unix)]
 #[test]
 fn a_signal_ends_a_run_with_its_report_and_its_own_exit_status() {
-    for (signal, name, status) in [("-INT", "SIGINT", 130), ("-TERM", "SIGTERM", 143), ("-HUP", "SIGHUP", 129)] {
+    for (signal, name, status) in
+        [("-INT", "SIGINT", 130), ("-TERM", "SIGTERM", 143), ("-HUP", "SIGHUP", 129)]
+    {
         let folder = tempfile::tempdir().unwrap();
         let output = interrupted(folder.path(), signal);
         let said = String::from_utf8_lossy(&output.stderr).into_owned();
@@ -248,8 +250,11 @@ fn a_full_standard_output_is_an_error_and_no_panic() {
 fn control_characters_of_a_file_do_not_reach_the_terminal() {
     let folder = tempfile::tempdir().unwrap();
     let name = "evil\u{1b}[2J.ron";
-    std::fs::write(folder.path().join(name), format!("(entries: [(at: 0.0, \u{1b}[31m{}: 1)])", "x".repeat(9000)))
-        .unwrap();
+    std::fs::write(
+        folder.path().join(name),
+        format!("(entries: [(at: 0.0, \u{1b}[31m{}: 1)])", "x".repeat(9000)),
+    )
+    .unwrap();
     let output = run(folder.path(), &["--headless", "--script", name]);
     let said = String::from_utf8_lossy(&output.stderr).into_owned();
     assert_eq!(output.status.code(), Some(1), "{said}");

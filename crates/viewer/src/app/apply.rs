@@ -32,7 +32,10 @@ impl App {
             return;
         }
         match command {
-            ViewerCommand::Goal(goal) => self.sim.overrides.goal = goal,
+            ViewerCommand::Goal(goal) => {
+                self.sim.overrides.goal = goal;
+                self.overridden_at = self.input();
+            }
             ViewerCommand::Layers(layers) => self.layers = layers,
             ViewerCommand::SavePreset(preset) => {
                 self.layout.presets.retain(|p| p.name != preset.name);
@@ -56,6 +59,7 @@ impl App {
             ViewerCommand::Help(open) => self.help = open,
             ViewerCommand::Record(what) => self.record = Some(what),
             ViewerCommand::DismissNotice => self.notice = None,
+            ViewerCommand::AskToQuit(ask) => self.leaving = ask,
             ViewerCommand::Quit => self.quit = true,
             ViewerCommand::Grab(grab) => self.grab = grab,
             world => self.apply_to_world(world),

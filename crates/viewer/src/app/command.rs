@@ -84,6 +84,8 @@ pub enum ViewerCommand {
     ResetAfterFailure,
     /// A message was read.
     DismissNotice,
+    /// Ask whether to leave, or no longer.
+    AskToQuit(bool),
     /// Leave.
     Quit,
 }

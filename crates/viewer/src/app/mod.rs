@@ -11,12 +11,13 @@ mod layers;
 mod layout;
 mod panel_kind;
 mod pick;
+mod place;
 mod plots;
 
 use std::sync::mpsc::Receiver;
 
 use egui::Ui;
-use policy_core::{Body, GamepadState};
+use policy_core::{Body, Button, GamepadState};
 
 use crate::analysis::Analysis;
 use crate::camera::Camera;
@@ -31,7 +32,13 @@ pub use layers::{Layers, Preset};
 pub use layout::{KeptLayout, LAYOUT_VERSION, Layout, LayoutError};
 pub use panel_kind::{PanelKind, Side};
 pub use pick::Grab;
+pub use place::place;
 pub use plots::{Plots, Series};
+
+/// How far a trigger has to be pulled to take over from a panel.
+const TRIGGER_MOVES: f32 = 0.1;
+/// The button that acts as the third trigger.
+const STYLE_BUTTON: Button = Button::RightShoulder;
 
 /// What is known of pads, filled in by whoever reads them.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -92,8 +99,14 @@ pub struct App {
     pub recording: Option<String>,
     /// Name of the adapter, for the profiler.
     pub adapter: String,
+    /// True while it asks whether to leave.
+    pub leaving: bool,
     /// True when it is time to leave.
     pub quit: bool,
+    /// A text field or drop-down was open in the last frame: the Escape key closes that.
+    escape_taken: bool,
+    /// The triggers when a panel took over from them.
+    overridden_at: GamepadState,
     /// The ground has changed: whoever draws uploads it and clears this.
     pub ground_changed: bool,
     /// A file that was dropped on the window; whoever draws loads it.
@@ -127,7 +140,10 @@ impl App {
             record: None,
             recording: None,
             adapter: String::new(),
+            leaving: false,
             quit: false,
+            escape_taken: false,
+            overridden_at: GamepadState::default(),
             ground_changed: true,
             dropped: None,
             analysis_soon: None,
@@ -175,6 +191,7 @@ impl App {
     pub fn tick(&mut self) -> Vec<Blowup> {
         self.pull();
         let input = self.input();
+        self.give_back_to_triggers(&input);
         self.sim.overrides.blend = self.layers.blend();
         let blowups = self.sim.tick(&input, self.camera.heading());
         if self.sim.playback().is_some_and(Playback::has_restarted) {
@@ -213,6 +230,20 @@ impl App {
         for command in commands {
             self.apply(command);
         }
+        keys::release(ui.ctx(), self);
+    }
+
+    /// A trigger that is pulled takes over again from what a panel asked for.
+    fn give_back_to_triggers(&mut self, input: &GamepadState) {
+        let then = &mut self.overridden_at;
+        then.left_trigger = then.left_trigger.min(input.left_trigger);
+        then.right_trigger = then.right_trigger.min(input.right_trigger);
+        let pulled = input.left_trigger > then.left_trigger + TRIGGER_MOVES
+            || input.right_trigger > then.right_trigger + TRIGGER_MOVES;
+        if pulled || input.buttons.pressed_since(then.buttons).contains(STYLE_BUTTON) {
+            self.sim.overrides.goal = None;
+        }
+        then.buttons = input.buttons;
     }
 
     fn fail(&mut self, blowup: &Blowup) {

@@ -6,9 +6,9 @@ use std::time::Instant;
 use anyhow::{Context as _, bail};
 
 use super::open::open;
-use super::{Demo, MOST_SECS};
 use super::pad_input::PadInput;
 use super::report::Report;
+use super::{Demo, MOST_SECS};
 use crate::analysis::Analysis;
 use crate::app::App;
 use crate::desk::Desk;
@@ -97,7 +97,9 @@ impl<'a> Headless<'a> {
         let clip = app.sim.playback().map(Playback::duration);
         let seconds = demo.seconds.or(clip).or(input.duration()).unwrap_or(10.0);
         if seconds > MOST_SECS {
-            bail!("expected a script or recording of at most {MOST_SECS} s, found {seconds} s; --seconds plays a part");
+            bail!(
+                "expected a script or recording of at most {MOST_SECS} s, found {seconds} s; --seconds plays a part"
+            );
         }
         if let Some(complaint) = app.notice.take() {
             bail!("{complaint}");

@@ -13,11 +13,7 @@ const LENGTH_AT: usize = 8;
 
 pub(super) fn parse(bytes: &[u8]) -> Result<gltf::Gltf, MeshError> {
     if bytes.len() as u64 > MAX_MESH_BYTES {
-        return Err(MeshError::TooMany {
-            what: "bytes",
-            most: MAX_MESH_BYTES as usize,
-            found: bytes.len(),
-        });
+        return Err(MeshError::TooMany { what: "bytes", most: MAX_MESH_BYTES as usize, found: bytes.len() });
     }
     check_header(bytes)?;
     let parsed = gltf::Gltf::from_slice_without_validation(bytes).map_err(MeshError::Parse)?;
