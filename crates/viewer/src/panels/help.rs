@@ -7,15 +7,14 @@ use crate::app::{App, KEYS, PAD, ViewerCommand};
 /// What the title and the frame of the window take, points, and the least that is left for the tables.
 const MARGIN: f32 = 90.0;
 const LEAST_HEIGHT: f32 = 80.0;
+/// Width of the tables, points.
+const WIDTH: f32 = 560.0;
 
 pub(super) fn show(ui: &mut Ui, app: &App, commands: &mut Vec<ViewerCommand>) {
     let mut open = true;
-    let window = egui::Window::new("Controls")
-        .id(egui::Id::unique("help"))
-        .open(&mut open)
-        .collapsible(false)
-        .resizable(false);
+    let window = egui::Window::new("Controls").id(egui::Id::unique("help")).open(&mut open);
     let room = (ui.ctx().content_rect().height() - MARGIN).max(LEAST_HEIGHT);
+    let window = window.collapsible(false).resizable(false).default_size([WIDTH, room]);
     window.anchor(egui::Align2::CENTER_CENTER, egui::Vec2::ZERO).show(ui.ctx(), |ui| {
         egui::ScrollArea::vertical().max_height(room).show(ui, |ui| tables(ui, app));
     });
