@@ -6,7 +6,8 @@ use std::sync::Arc;
 use policy_core::{CharacterPack, PackError};
 
 use crate::files::{self, ReadError};
-use crate::mesh::{MeshError, SkinnedMesh};
+use crate::mesh::{MeshError, Rig, SkinnedMesh};
+use crate::sim::SimError;
 
 /// Largest file that is read, bytes: a pack, with a mesh inside.
 pub const MAX_DROPPED_BYTES: u64 = 128 << 20;
@@ -54,19 +55,27 @@ pub enum DroppedError {
         /// Why.
         source: PackError,
     },
+    /// The pack's body can't be simulated.
+    #[error("pack {}: {source}", path.display())]
+    Body {
+        /// The file.
+        path: PathBuf,
+        /// Why.
+        source: SimError,
+    },
 }
 
 impl Dropped {
-    /// Opens a file.
+    /// Opens a file. A mesh has to fit `rig`.
     ///
     /// # Errors
     /// [`DroppedError`], which names the file.
-    pub fn load(path: &Path) -> Result<Self, DroppedError> {
+    pub fn load(path: &Path, rig: &Rig) -> Result<Self, DroppedError> {
         let path_buf = || path.to_owned();
         let bytes = files::read(path, MAX_DROPPED_BYTES)
             .map_err(|source| DroppedError::Read { path: path_buf(), source })?;
         if bytes.starts_with(b"glTF") {
-            let mesh = SkinnedMesh::from_bytes(&bytes)
+            let mesh = SkinnedMesh::from_bytes(&bytes, rig)
                 .map_err(|source| DroppedError::Mesh { path: path_buf(), source })?;
             return Ok(Self::Mesh(Box::new(mesh)));
         }

@@ -71,7 +71,7 @@ fn run(cli: &Cli) -> anyhow::Result<()> {
         None => {
             let mut opened = open(&cli.demo)?;
             opened.app.start_analysis();
-            viewer::window::run(&cli.demo, opened.app, opened.mesh, opened.layout)
+            viewer::window::run(&cli.demo, opened.app, opened.appearance, opened.layout)
         }
     }
 }

@@ -1,13 +1,19 @@
 //! Files dropped on the window: packs and meshes are opened, others are refused in words that fit.
 
+mod common;
+
 use viewer::assets::{HUMANOID_GLB, HUMANOID_PACK};
 use viewer::dropped::Dropped;
+
+fn rig() -> viewer::mesh::Rig {
+    viewer::appearance::rig(common::simulation().model())
+}
 
 fn dropped(name: &str, bytes: &[u8]) -> Result<Dropped, String> {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join(name);
     std::fs::write(&path, bytes).unwrap();
-    Dropped::load(&path).map_err(|error| error.to_string())
+    Dropped::load(&path, &rig()).map_err(|error| error.to_string())
 }
 
 #[test]
@@ -32,6 +38,6 @@ fn what_is_neither_is_refused_by_name() {
         assert!(said.contains(name) && said.contains(part), "{said}");
     }
     let folder = tempfile::tempdir().unwrap();
-    let said = Dropped::load(folder.path()).unwrap_err().to_string();
+    let said = Dropped::load(folder.path(), &rig()).unwrap_err().to_string();
     assert!(said.contains("found a folder"), "{said}");
 }

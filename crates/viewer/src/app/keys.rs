@@ -147,7 +147,7 @@ pub(super) fn read(ui: &Ui, app: &mut App, commands: &mut Vec<ViewerCommand>) {
 fn shortcuts(app: &App) -> Vec<(Key, ViewerCommand)> {
     let mut shown = app.layout.shown;
     shown.collision_shapes = !shown.collision_shapes;
-    let next_mode = next(&BlendMode::ALL, app.sim.overrides.mode);
+    let next_mode = next(&BlendMode::ALL, app.sim.blend_mode());
     let ghost = match app.sim.ghost() {
         Some(_) => None,
         None => Some(next_mode),

@@ -7,7 +7,7 @@ use serde::{Deserialize, Serialize};
 use super::{PanelKind, Preset, Side};
 use crate::camera::CameraMode;
 use crate::files;
-use crate::stage::Shown;
+use crate::scene_setup::Shown;
 
 /// Version of the file.
 pub const LAYOUT_VERSION: u32 = 1;
@@ -17,7 +17,7 @@ const MOST_BYTES: u64 = 1 << 20;
 /// What is remembered.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub struct Layout {
+pub struct PanelLayout {
     /// [`LAYOUT_VERSION`].
     pub version: u32,
     /// Open panels from top to bottom, each with its side.
@@ -32,7 +32,7 @@ pub struct Layout {
     pub presets: Vec<Preset>,
 }
 
-impl Default for Layout {
+impl Default for PanelLayout {
     fn default() -> Self {
         Self {
             version: LAYOUT_VERSION,
@@ -87,7 +87,7 @@ struct Versioned {
     version: u32,
 }
 
-impl Layout {
+impl PanelLayout {
     /// Where the user's layout is kept; `None` when the system names no such place.
     #[must_use]
     pub fn home() -> Option<PathBuf> {
@@ -160,13 +160,13 @@ impl Layout {
 #[derive(Clone, Debug)]
 pub struct KeptLayout {
     path: PathBuf,
-    kept: Layout,
+    kept: PanelLayout,
 }
 
 impl KeptLayout {
     /// Keeps changes from `layout` on in the file `path`.
     #[must_use]
-    pub fn new(path: PathBuf, layout: &Layout) -> Self {
+    pub fn new(path: PathBuf, layout: &PanelLayout) -> Self {
         Self { path, kept: layout.clone() }
     }
 
@@ -174,7 +174,7 @@ impl KeptLayout {
     ///
     /// # Errors
     /// When it can't be written. The next change is tried again.
-    pub fn keep(&mut self, layout: &Layout) -> Result<(), LayoutError> {
+    pub fn keep(&mut self, layout: &PanelLayout) -> Result<(), LayoutError> {
         if *layout == self.kept {
             return Ok(());
         }
@@ -191,7 +191,7 @@ mod tests {
     fn a_layout_comes_back_as_it_was_saved() {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("a").join("layout.ron");
-        let mut layout = Layout::default();
+        let mut layout = PanelLayout::default();
         layout.toggle(PanelKind::Analysis);
         layout.swap_side(PanelKind::Paths);
         layout.presets.push(Preset {
@@ -201,34 +201,34 @@ mod tests {
             t: [0.0, 0.5, 1.0],
         });
         layout.save(&path).unwrap();
-        assert_eq!(Layout::load(&path).unwrap(), layout);
+        assert_eq!(PanelLayout::load(&path).unwrap(), layout);
     }
 
     #[test]
     fn a_change_is_written_at_once() {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("layout.ron");
-        let mut layout = Layout::default();
+        let mut layout = PanelLayout::default();
         let mut kept = KeptLayout::new(path.clone(), &layout);
         kept.keep(&layout).unwrap();
         assert!(!path.exists(), "nothing has changed");
         layout.presets.push(Preset { name: "x".into(), from: "a".into(), to: "b".into(), t: [0.5; 3] });
         kept.keep(&layout).unwrap();
-        assert_eq!(Layout::load(&path).unwrap(), layout);
+        assert_eq!(PanelLayout::load(&path).unwrap(), layout);
     }
 
     #[test]
     fn another_version_and_nonsense_are_refused_by_name() {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("layout.ron");
-        assert_eq!(Layout::load(&path).unwrap(), Layout::default());
+        assert_eq!(PanelLayout::load(&path).unwrap(), PanelLayout::default());
         std::fs::write(&path, "(version: 99, docks: [])").unwrap();
-        let error = Layout::load(&path).unwrap_err().to_string();
+        let error = PanelLayout::load(&path).unwrap_err().to_string();
         assert!(error.contains("layout.ron") && error.contains("expected version 1, found 99"), "{error}");
         std::fs::write(&path, "(version: 1, oben: 3)").unwrap();
-        assert!(matches!(Layout::load(&path), Err(LayoutError::Text { .. })));
+        assert!(matches!(PanelLayout::load(&path), Err(LayoutError::Text { .. })));
         std::fs::write(&path, [0xff, 0xfe, 0]).unwrap();
-        assert!(matches!(Layout::load(&path), Err(LayoutError::Text { .. })));
-        assert!(matches!(Layout::load(folder.path()), Err(LayoutError::File { .. })));
+        assert!(matches!(PanelLayout::load(&path), Err(LayoutError::Text { .. })));
+        assert!(matches!(PanelLayout::load(folder.path()), Err(LayoutError::File { .. })));
     }
 }

@@ -17,19 +17,19 @@ mod plots;
 use std::sync::mpsc::Receiver;
 
 use egui::Ui;
-use policy_core::{Body, Button, GamepadState};
+use policy_core::{Button, GamepadState};
 
 use crate::analysis::Analysis;
 use crate::camera::Camera;
 use crate::panels;
 use crate::render::Scene;
-use crate::sim::{Blowup, Playback, Simulation, TICK_SECS};
-use crate::stage::{Trail, set_scene};
+use crate::scene_setup::{Trail, set_scene};
+use crate::sim::{Divergence, Playback, Simulation};
 pub use clock::Clock;
 pub use command::{Record, ViewerCommand};
 pub use keys::{KEYS, Keys, PAD};
 pub use layers::{Layers, Preset};
-pub use layout::{KeptLayout, LAYOUT_VERSION, Layout, LayoutError};
+pub use layout::{KeptLayout, LAYOUT_VERSION, LayoutError, PanelLayout};
 pub use panel_kind::{PanelKind, Side};
 pub use pick::Grab;
 pub use place::place;
@@ -58,8 +58,8 @@ pub struct PadView {
 pub struct Failure {
     /// What happened.
     pub what: String,
-    /// Where the state before it was written.
-    pub dump: Option<String>,
+    /// The replay file: the state before it.
+    pub replay: Option<String>,
 }
 
 /// The demo.
@@ -74,7 +74,7 @@ pub struct App {
     /// The way walked.
     pub trail: Trail,
     /// Open panels, toggles, presets: what is remembered.
-    pub layout: Layout,
+    pub layout: PanelLayout,
     /// Sliders of the layers.
     pub layers: Layers,
     /// Pads.
@@ -103,6 +103,8 @@ pub struct App {
     pub leaving: bool,
     /// True when it is time to leave.
     pub quit: bool,
+    /// False when there is no mesh to draw: then collision shapes are drawn.
+    pub has_mesh: bool,
     /// A text field or drop-down was open in the last frame: the Escape key closes that.
     escape_taken: bool,
     /// The triggers when a panel took over from them.
@@ -117,15 +119,16 @@ pub struct App {
 impl App {
     /// The demo of a world.
     #[must_use]
-    pub fn new(sim: Simulation, layout: Layout) -> Self {
+    pub fn new(sim: Simulation, layout: PanelLayout) -> Self {
         let mut camera = Camera::default();
         camera.mode = layout.camera;
         let player = sim.player();
-        camera.settle(player.state.body(Body::Pelvis).position, player.state.ground_height);
+        camera.set_size(player.state.root_height());
+        camera.settle(player.state.root().position, player.state.ground_height);
         Self {
             layers: Layers::new(sim.pack()),
+            clock: Clock::new(sim.tick_secs()),
             sim,
-            clock: Clock::default(),
             camera,
             trail: Trail::default(),
             layout,
@@ -142,6 +145,7 @@ impl App {
             adapter: String::new(),
             leaving: false,
             quit: false,
+            has_mesh: true,
             escape_taken: false,
             overridden_at: GamepadState::default(),
             ground_changed: true,
@@ -169,8 +173,8 @@ impl App {
         }
         if self.failure.is_none() {
             for _ in 0..self.clock.ticks_due(dt) {
-                if let Some(blowup) = self.tick().first() {
-                    self.fail(blowup);
+                if let Some(divergence) = self.tick().first() {
+                    self.fail(divergence);
                     break;
                 }
             }
@@ -182,18 +186,18 @@ impl App {
     pub fn follow(&mut self, dt: f32, alpha: f32) {
         let input = self.input();
         let player = self.sim.player();
-        let pelvis = self.sim.poses(0, alpha).positions[0];
+        let root = self.sim.poses(0, alpha).positions[0];
         let (heading, ground) = (player.heading(), player.state.ground_height);
-        self.camera.advance(dt, input.right_stick, pelvis, heading, ground);
+        self.camera.advance(dt, input.right_stick, root, heading, ground);
     }
 
-    /// One tick of the world. Characters that blew up are in their state before it.
-    pub fn tick(&mut self) -> Vec<Blowup> {
+    /// One tick of the world. Characters whose physics diverged are in their state before it.
+    pub fn tick(&mut self) -> Vec<Divergence> {
         self.pull();
         let input = self.input();
         self.give_back_to_triggers(&input);
         self.sim.overrides.blend = self.layers.blend();
-        let blowups = self.sim.tick(&input, self.camera.heading());
+        let divergences = self.sim.tick(&input, self.camera.heading());
         if self.sim.playback().is_some_and(Playback::has_restarted) {
             self.trail.clear();
         }
@@ -202,7 +206,7 @@ impl App {
         if let Some(analysis) = &mut self.analysis {
             analysis.follow(self.sim.player());
         }
-        blowups
+        divergences
     }
 
     /// Between the last tick but one and the last, where the picture is.
@@ -213,8 +217,9 @@ impl App {
 
     /// Sets the scene for the next picture.
     pub fn set_scene(&self, scene: &mut Scene, around: f32) {
-        let how = (self.alpha(), &self.layout.shown, &self.trail);
-        set_scene(scene, &self.sim, &self.camera, around, how);
+        let mut shown = self.layout.shown;
+        shown.collision_shapes |= !self.has_mesh;
+        set_scene(scene, &self.sim, &self.camera, around, (self.alpha(), &shown, &self.trail));
         if let Some(grab) = &self.grab {
             let from = self.sim.poses(0, self.alpha()).positions[grab.body.index()];
             scene.arrow(from, from + grab.pull, 0.012, [0.95, 0.3, 0.1, 1.0]);
@@ -246,11 +251,11 @@ impl App {
         then.buttons = input.buttons;
     }
 
-    fn fail(&mut self, blowup: &Blowup) {
+    fn fail(&mut self, divergence: &Divergence) {
         let path = std::env::temp_dir().join("policy-space-diverged.json");
-        let dump = blowup.dump.save(&path).is_ok().then(|| path.display().to_string());
-        self.failure =
-            Some(Failure { what: format!("character {}: {}", blowup.character, blowup.what), dump });
+        let replay = divergence.replay.save(&path).is_ok().then(|| path.display().to_string());
+        let what = format!("character {}: {}", divergence.character, divergence.what);
+        self.failure = Some(Failure { what, replay });
     }
 
     /// Pulls the body that the mouse holds.
@@ -258,7 +263,8 @@ impl App {
         if let Some(grab) = &self.grab {
             let (body, force) = (grab.body, grab.force());
             // A force that is out of range is not worth stopping for: the next frame brings another.
-            let _ = self.sim.character_mut(0).push(body, force, TICK_SECS);
+            let secs = self.sim.tick_secs();
+            let _ = self.sim.character_mut(0).push(body, force, secs);
         }
     }
 }

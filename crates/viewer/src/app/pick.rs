@@ -3,7 +3,7 @@
 use egui::{PointerButton, Rect, Ui};
 use glam::{Affine3A, Vec2, Vec3};
 use physics_bridge::ShapeKind;
-use policy_core::Body;
+use policy_core::BodyId;
 
 use super::{App, ViewerCommand};
 use crate::render::View;
@@ -12,7 +12,7 @@ use crate::render::View;
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Grab {
     /// The body.
-    pub body: Body,
+    pub body: BodyId,
     /// From the body to the mouse, world space, metres.
     pub pull: Vec3,
 }
@@ -128,13 +128,13 @@ impl Ray {
 }
 
 /// The body of the player whose shape the ray meets first, or passes within [`REACH`] of.
-fn nearest_body(app: &App, ray: &Ray) -> Option<Body> {
+fn nearest_body(app: &App, ray: &Ray) -> Option<BodyId> {
     // A clip can't be pulled at: the mouse turns the camera.
     if app.sim.playback().is_some() {
         return None;
     }
     let poses = app.sim.poses(0, app.alpha());
-    let mut nearest: Option<(f32, Body)> = None;
+    let mut nearest: Option<(f32, BodyId)> = None;
     for shape in app.sim.model().shapes() {
         let i = shape.body.index();
         let world_from_body = Affine3A::from_rotation_translation(poses.rotations[i], poses.positions[i]);

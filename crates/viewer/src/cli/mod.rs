@@ -17,7 +17,7 @@ use crate::app::{App, PanelKind};
 use crate::sim::{GroundKind, MAX_CHARACTERS};
 use crate::text;
 
-/// Steer a physics-based humanoid by blending the parameters of tiny policies.
+/// Steer a physics-based character by blending the parameters of tiny policies.
 #[derive(Debug, Parser)]
 #[command(name = "policy-space", version, after_help = EXAMPLES, args_conflicts_with_subcommands = true)]
 pub struct Cli {
@@ -39,6 +39,8 @@ Examples:
       without a window: 20 seconds under a script of pad input, a report and pictures
   policy-space --headless --script assets/scripts/walk.ron --seconds 5 --frames out/ --panels
       the same, with the panels in the pictures
+  policy-space --character quadruped.pack.safetensors
+      another character; a pack or a mesh can also be dropped on the window
   policy-space --poses walk.json
       a clip in a window, round and round; with --headless --frames out/ once, as pictures
 
@@ -82,7 +84,7 @@ pub struct Demo {
         long,
         value_name = "FILE",
         conflicts_with_all = [
-            "script", "recording", "report", "pack", "mode", "ghost", "terrain", "characters", "seed",
+            "script", "recording", "report", "character", "mode", "ghost", "terrain", "characters", "seed",
         ]
     )]
     pub poses: Option<PathBuf>,
@@ -116,12 +118,17 @@ pub struct Demo {
     /// Distance of the camera, metres.
     #[arg(long, value_name = "METRES", value_parser = distance)]
     pub distance: Option<f32>,
-    /// Character pack instead of the one inside.
-    #[arg(long, value_name = "FILE")]
-    pub pack: Option<PathBuf>,
-    /// Humanoid to draw (.glb whose nodes carry the body names) instead of the one inside.
+    /// Character pack to open instead of the humanoid inside: any skeleton. Packs of version 2 bring their body; those
+    /// of version 1 are humanoids.
+    #[arg(long, value_name = "FILE", visible_alias = "pack")]
+    pub character: Option<PathBuf>,
+    /// Mesh to draw (.glb whose nodes carry the body names) instead of the pack's own. Characters without a mesh are
+    /// drawn as their collision shapes.
     #[arg(long, value_name = "FILE")]
     pub mesh: Option<PathBuf>,
+    /// Save and restore every controller through bytes at every tick: a check that changes no bit of the result.
+    #[arg(long, requires = "headless")]
+    pub renew_controllers: bool,
     /// How blends become actions: parameters, actions or switch.
     #[arg(long, default_value = "parameters", value_parser = mode)]
     pub mode: BlendMode,
@@ -160,12 +167,12 @@ pub fn trace(app: &App) {
     let player = app.sim.player();
     let position = player.report().position;
     let nodes = app.sim.pack().graph().nodes();
-    let at = player.state.body(policy_core::Body::Pelvis).position;
+    let at = player.state.root().position;
     let line = format!(
         "tick {} {} {} {:.2} at {:.3} {:.3} {:.3} speed {:.2}{}",
         app.sim.ticks(),
-        nodes[position.from].name,
-        nodes[position.to].name,
+        nodes[position.from.index()].name,
+        nodes[position.to.index()].name,
         position.t,
         at.x,
         at.y,
@@ -256,7 +263,7 @@ mod tests {
         assert!(error(&["--frobnicate"]).contains("--frobnicate"));
         assert!(error(&["--headless", "--frames", "x", "--panels=stove"]).contains("paths,graph"));
         assert!(error(&["--report", "x.json"]).contains("--headless"));
-        for other in ["--script", "--recording", "--report", "--pack"] {
+        for other in ["--script", "--recording", "--report", "--character"] {
             let said = error(&["--headless", "--poses", "a.json", other, "b"]);
             assert!(said.contains("--poses") && said.contains("cannot be used with"), "{said}");
         }

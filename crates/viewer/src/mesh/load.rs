@@ -2,25 +2,25 @@
 
 use glam::{Affine3A, Mat4};
 use gltf::accessor::{DataType, Dimensions};
-use policy_core::Body;
+use policy_core::BodyId;
 
 use super::binding::Binding;
 use super::primitive::{Follow, Primitive};
 use super::read::{Checked, is_kind};
-use super::{Joint, Level, MAX_JOINTS, Material, MeshError, Part, SkinnedMesh, parse};
+use super::{Joint, Level, MAX_JOINTS, Material, MeshError, Part, Rig, SkinnedMesh, parse};
 
-pub(super) fn load(bytes: &[u8]) -> Result<SkinnedMesh, MeshError> {
+pub(super) fn load(bytes: &[u8], rig: &Rig) -> Result<SkinnedMesh, MeshError> {
     let glb = parse::parse(bytes)?;
     let blob = glb.blob.as_deref().ok_or(MeshError::NoBinary)?;
     let checked = Checked::new(&glb.document, blob)?;
     let document = checked.document;
     let skinned = document.nodes().find_map(|n| Some((n.mesh()?, n.skin()?)));
-    let rigid =
-        || document.nodes().any(|n| n.mesh().is_some() && n.name().and_then(Body::from_name).is_some());
+    let is_body = |name: &str| rig.skeleton().body_named(name).is_some();
+    let rigid = || document.nodes().any(|n| n.mesh().is_some() && n.name().is_some_and(is_body));
     if skinned.is_none() && !rigid() {
         return Err(MeshError::NoSkin { meshes: document.meshes().count() });
     }
-    let binding = Binding::of(document)?;
+    let binding = Binding::of(document, rig)?;
     let mut materials: Vec<Material> = document.materials().map(|m| material(&m)).collect();
     materials.push(material_of([0.6, 0.6, 0.6], 0.6, 0.0, true));
     let (joints, levels) = match skinned {
@@ -72,13 +72,13 @@ fn skin_joints(
         .collect()
 }
 
-fn joint(binding: &Binding, body: Body, world_from_mesh: Mat4) -> Result<Joint, MeshError> {
+fn joint(binding: &Binding, body: BodyId, world_from_mesh: Mat4) -> Result<Joint, MeshError> {
     let body_from_mesh = binding.body_from_world[body.index()] * Affine3A::from_mat4(world_from_mesh);
     if body_from_mesh.is_finite() {
         Ok(Joint { body, body_from_mesh })
     } else {
         Err(MeshError::Unsupported {
-            what: format!("a transform of {} with numbers that are not finite", body.name()),
+            what: format!("a transform of body {} with numbers that are not finite", body.index()),
         })
     }
 }

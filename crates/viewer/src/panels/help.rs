@@ -1,4 +1,4 @@
-//! The overlay that says what each control does now.
+//! The overlay that says what each control does.
 
 use egui::Ui;
 
@@ -28,7 +28,7 @@ fn tables(ui: &mut Ui, app: &App) {
     ui.add_space(8.0);
     table(ui, app.pad.name.as_deref().unwrap_or("Pad (none connected)"), &PAD);
     ui.add_space(8.0);
-    ui.label(format!("Camera: {}. Blends: {}.", app.camera.mode.name(), app.sim.overrides.mode.name()));
+    ui.label(format!("Camera: {}. Blends: {}.", app.camera.mode.name(), app.sim.blend_mode().name()));
     let skills: Vec<&str> = app.sim.pack().skills().iter().map(|s| s.name.as_str()).collect();
     if skills.is_empty() {
         ui.label("This pack has no episodic skills: their buttons do nothing.");

@@ -145,7 +145,7 @@ fn titled(ui: &mut Ui, app: &App, kind: PanelKind, commands: &mut Vec<ViewerComm
 /// One line at the foot of the picture: what the character does, and messages.
 fn status(ui: &mut Ui, app: &App, free: Rect, commands: &mut Vec<ViewerCommand>) {
     let player = app.sim.player();
-    let skill = player.report().skill.map(|s| app.sim.pack().skills()[s.skill].name.as_str());
+    let skill = player.report().skill.map(|s| app.sim.pack().skills()[s.skill.index()].name.as_str());
     let state = if app.clock.paused { "  paused" } else { "" };
     let text = match app.sim.playback() {
         Some(clip) => {
