@@ -208,7 +208,7 @@ impl FrameComposer {
         self.recorder = Some((Recorder::start(kind, path, size, FILM_FPS), Instant::now(), 0));
     }
 
-    /// Ends the recording; what is left is written while the demo goes on.
+    /// Ends the recording; what is left is written while the demo runs.
     fn stop(&mut self, app: &mut App) {
         app.recording = None;
         if let Some((mut recorder, ..)) = self.recorder.take() {

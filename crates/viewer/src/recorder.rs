@@ -52,7 +52,7 @@ pub enum RecorderError {
     },
 }
 
-/// Kinds of recording that go on.
+/// Kinds of recording, besides single pictures.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Kind {
     /// PNG files, numbered.
@@ -136,7 +136,7 @@ impl Recorder {
         self.thread.as_ref().is_none_or(JoinHandle::is_finished)
     }
 
-    /// Ends the recording, waits until all is written and answers how many pictures were dropped.
+    /// Ends the recording, waits until all is written and returns how many pictures were dropped.
     ///
     /// # Errors
     /// When anything could not be written.

@@ -53,7 +53,7 @@ pub struct Trail {
 }
 
 impl Trail {
-    /// Takes in where the player is.
+    /// Adds where the player is.
     pub fn follow(&mut self, sim: &Simulation) {
         let at = sim.player().position();
         if !at.is_finite() {

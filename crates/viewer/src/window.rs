@@ -1,4 +1,4 @@
-//! The demo in a window: events in, frames out. Whatever surface and device do, the demo goes on.
+//! The demo in a window: events in, frames out. The demo survives the loss of surface and device.
 
 use std::path::PathBuf;
 use std::sync::Arc;
@@ -194,7 +194,7 @@ impl OpenWindow {
         Ok(Self { window, surface, configuration, gpu, composer, egui, last: now, traced: now })
     }
 
-    /// Ends recordings and gives surface and device up; answers what outlives them.
+    /// Ends recordings and gives surface and device up; returns what outlives them.
     fn close(self) -> (Arc<Window>, Appearance) {
         let appearance = self.composer.appearance().clone();
         self.composer.finish();
@@ -229,7 +229,7 @@ impl OpenWindow {
                 self.surface.configure(&self.gpu.device, &self.configuration);
                 None
             }
-            // Minimised, covered or late: the world goes on, there is nothing to draw into.
+            // Minimised, covered or late: the simulation runs, there is nothing to draw into.
             _ => None,
         };
         let Some(texture) = texture else {

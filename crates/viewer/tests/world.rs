@@ -2,15 +2,12 @@
 
 mod common;
 
-use std::sync::Arc;
-
 use common::simulation;
 use image::{Rgba, RgbaImage};
 use physics_bridge::Settings;
-use policy_core::{BlendMode, CharacterPack, GamepadState, Heading};
-use viewer::assets;
+use policy_core::{BlendMode, GamepadState, Heading};
 use viewer::recorder::{Kind, Recorder};
-use viewer::sim::{LIE_SECS, SHOVE_BUTTON, SimConfig, SimError, Simulation, TICK_SECS};
+use viewer::sim::{LIE_SECS, SHOVE_BUTTON, SimConfig, SimError, Simulation};
 
 const FORWARD: GamepadState = GamepadState {
     left_stick: [0.0, 1.0],
@@ -67,7 +64,7 @@ fn who_falls_without_a_skill_to_rise_is_counted_and_stood_up() {
     let mut limp = sim.model().settings();
     limp.strength = 0.0;
     sim.set_settings(limp).unwrap();
-    let ticks = ((LIE_SECS + 3.0) / TICK_SECS) as usize;
+    let ticks = ((LIE_SECS + 3.0) / sim.tick_secs()) as usize;
     run(&mut sim, ticks);
     assert!(sim.totals().falls >= 1, "{:?}", sim.totals());
     if sim.pack().recovery().is_none() {

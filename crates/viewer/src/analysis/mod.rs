@@ -76,7 +76,7 @@ impl Analysis {
         Some(Self { states, cloud, trail, parameters: ParameterMap::of(pack) })
     }
 
-    /// Takes in where the player is.
+    /// Adds where the player is.
     pub fn follow(&mut self, player: &SteeredCharacter) {
         let input = player.controller.policy_input();
         let observation = player.controller.pack().skeleton().observation_len();

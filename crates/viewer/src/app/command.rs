@@ -58,7 +58,7 @@ pub enum ViewerCommand {
     Ground(GroundKind),
     /// So many characters.
     Characters(usize),
-    /// Pull a body, or let go.
+    /// Pull a body, or release it.
     Grab(Option<Grab>),
     /// How the camera moves.
     Camera(CameraMode),

@@ -7,7 +7,7 @@ use super::{App, Record, ViewerCommand};
 use crate::camera::CameraMode;
 use crate::sim::SHOVE_BUTTON;
 
-/// Seconds in which a held key runs a trigger from 0 to 1, and back when let go.
+/// Seconds in which a held key runs a trigger from 0 to 1, and back when it is released.
 const RAMP_SECS: f32 = 1.2;
 /// Seconds in which the stick follows the keys.
 const STICK_SECS: f32 = 0.15;
@@ -26,7 +26,7 @@ pub struct Keys {
 /// What keys do, for the help overlay.
 pub const KEYS: [(&str, &str); 19] = [
     ("W A S D, arrows", "walk where the camera looks; with Shift half as fast"),
-    ("E", "hold: right trigger, the speed path; lets go slowly"),
+    ("E", "hold: right trigger, the speed path; it returns slowly"),
     ("Q", "hold: left trigger, the stance path"),
     ("Z", "hold: right shoulder, the style path, where the pack has one"),
     ("Space", "get up"),
@@ -96,7 +96,7 @@ pub(super) fn release(context: &egui::Context, app: &mut App) {
     }
 }
 
-/// Takes in the keys of this frame.
+/// Reads the keys of this frame.
 pub(super) fn read(ui: &Ui, app: &mut App, commands: &mut Vec<ViewerCommand>) {
     if ui.ctx().text_edit_focused() {
         app.keys = Keys { stick: app.keys.stick, triggers: app.keys.triggers, ..Keys::default() };

@@ -51,7 +51,7 @@ impl Default for PanelLayout {
     }
 }
 
-/// Why a layout can't be read or written. The demo then goes on with the default.
+/// Why a layout can't be read or written. The demo then uses the default.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum LayoutError {

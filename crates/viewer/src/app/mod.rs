@@ -40,7 +40,7 @@ const TRIGGER_MOVES: f32 = 0.1;
 /// The button that acts as the third trigger.
 const STYLE_BUTTON: Button = Button::RightShoulder;
 
-/// What is known of pads, filled in by whoever reads them.
+/// What is known of pads, filled in by the reader of the pads.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct PadView {
     /// Name of the active pad and its back end.
@@ -93,7 +93,7 @@ pub struct App {
     pub grab: Option<Grab>,
     /// True while the help overlay is open.
     pub help: bool,
-    /// What the recorder is to do at the next frame; whoever draws takes it.
+    /// What the recorder is to do at the next frame; the frame composer takes it.
     pub record: Option<Record>,
     /// What is being recorded.
     pub recording: Option<String>,
@@ -109,9 +109,9 @@ pub struct App {
     escape_taken: bool,
     /// The triggers when a panel took over from them.
     overridden_at: GamepadState,
-    /// The ground has changed: whoever draws uploads it and clears this.
+    /// The ground has changed: the frame composer uploads it and clears this.
     pub ground_changed: bool,
-    /// A file that was dropped on the window; whoever draws loads it.
+    /// A file that was dropped on the window; the frame composer opens it.
     pub dropped: Option<std::path::PathBuf>,
     analysis_soon: Option<Receiver<Analysis>>,
 }
@@ -182,7 +182,7 @@ impl App {
         self.follow(dt.min(0.1), self.alpha());
     }
 
-    /// The camera takes `dt` seconds to follow the player, who is `alpha` of the way into the last tick.
+    /// The camera takes `dt` seconds to follow the player, which is `alpha` of the way into the last tick.
     pub fn follow(&mut self, dt: f32, alpha: f32) {
         let input = self.input();
         let player = self.sim.player();

@@ -31,7 +31,7 @@ impl Grab {
     }
 }
 
-/// Takes in the mouse over `free`, the part of the window that no panel covers.
+/// Reads the mouse over `free`, the part of the window that no panel covers.
 pub(super) fn read(ui: &mut Ui, app: &App, free: Rect, around: f32, commands: &mut Vec<ViewerCommand>) {
     let screen = ui.ctx().content_rect();
     let response = ui.interact(free, ui.scope_id().with("picture"), egui::Sense::click_and_drag());

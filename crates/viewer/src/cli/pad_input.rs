@@ -9,7 +9,7 @@ use crate::files;
 
 /// A pad that depends on time alone.
 pub enum PadInput {
-    /// Nobody touches it.
+    /// At rest.
     Neutral,
     /// Key frames over time.
     Script(Script),
@@ -34,7 +34,7 @@ impl PadInput {
         Ok(demo.script.as_deref().map(Script::load).transpose()?.map_or(Self::Neutral, Self::Script))
     }
 
-    /// Seconds it lasts; `None` for a pad that nobody touches.
+    /// Seconds it lasts; `None` for a pad at rest.
     pub fn duration(&self) -> Option<f64> {
         match self {
             Self::Neutral => None,

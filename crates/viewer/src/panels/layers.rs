@@ -29,7 +29,7 @@ pub(super) fn show(ui: &mut Ui, app: &App, commands: &mut Vec<ViewerCommand>) {
         }
     }
     presets(ui, app, &mut layers, commands);
-    // Whoever moves a slider wants it to count.
+    // Moving a slider switches the sliders on.
     layers.active |= layers.t != app.layers.t;
     if layers != app.layers {
         commands.push(ViewerCommand::Layers(layers));

@@ -34,7 +34,7 @@ const LEAST_VIEW: f32 = 300.0;
 /// Longest message to the user, characters.
 const LONGEST_NOTICE: usize = 500;
 
-/// Draws everything; answers the part of the window that no panel covers.
+/// Draws everything; returns the part of the window that no panel covers.
 pub(crate) fn show(ui: &mut Ui, app: &App, commands: &mut Vec<ViewerCommand>) -> Rect {
     if !app.layout.hidden {
         bar(ui, app, commands);

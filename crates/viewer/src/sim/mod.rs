@@ -177,7 +177,7 @@ impl Simulation {
         }
     }
 
-    /// Takes in what the physics did to every character.
+    /// Updates every character from its physics.
     fn observe(&mut self, dt_secs: f32) -> Vec<Divergence> {
         let describe = |(character, diverged): (usize, &Diverged)| Divergence {
             character,

@@ -105,7 +105,7 @@ impl SteeredCharacter {
         self.command.target = command.target.map(|t| t - player + self.position());
     }
 
-    /// Takes in what a tick of `dt_secs` did.
+    /// Updates poses, history and sums after a tick of `dt_secs`.
     pub(super) fn observe(&mut self, character: &Character, dt_secs: f32, totals: &mut Totals) {
         let before = self.position();
         self.take_pose(character);
@@ -120,7 +120,7 @@ impl SteeredCharacter {
         totals.hash.absorb(&self.pose);
     }
 
-    /// Takes in a tick whose physics diverged: the character is in its state before it, and so is the controller where
+    /// Updates poses after a tick whose physics diverged: the character is in its state before it, and so is the controller where
     /// a history is kept.
     pub(super) fn observe_divergence(&mut self, character: &Character) {
         self.load_moment(0);
