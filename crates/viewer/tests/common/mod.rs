@@ -66,6 +66,7 @@ pub fn pack_with_skills(threshold: f32) -> CharacterPack {
         minimum_height: 0.0,
     };
     let skill = |name: &str, policy: &str, entry: &[&str], discriminator: Option<&str>| SkillEntry {
+        minimum_speed_mps: 0.0,
         name: name.into(),
         policy: policy.into(),
         entry: entry.iter().map(|n| (*n).into()).collect(),
