@@ -1,6 +1,7 @@
 //! `trainer evaluate`: measures a pack.
 
 use std::collections::BTreeMap;
+use std::io::Write;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
@@ -12,6 +13,8 @@ use trainer::clip::ClipFolder;
 use trainer::evaluate::{Effort, Progress, Section, clip_states, evaluate, plots, table};
 use trainer::recipe::Recipe;
 use trainer::storage::write_atomically;
+
+use super::output::say;
 
 /// Arguments of the verb.
 #[derive(Args)]
@@ -75,14 +78,14 @@ pub(crate) fn run(
     if let Some(svg) = &arguments.plots {
         plots::draw(&evaluation.player, svg).with_context(|| format!("cannot draw {}", svg.display()))?;
     }
-    eprint!("{}", table(&evaluation.player));
+    std::io::stderr().lock().write_all(table(&evaluation.player).as_bytes())?;
     let text = serde_json::to_string_pretty(&evaluation)?;
     match &arguments.json {
         Some(path) => {
             write_atomically(path, text.as_bytes())
                 .with_context(|| format!("cannot write {}", path.display()))?;
         }
-        None => println!("{text}"),
+        None => say(text)?,
     }
     Ok(())
 }

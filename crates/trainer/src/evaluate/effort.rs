@@ -5,7 +5,7 @@ use policy_core::CharacterPack;
 use super::Section;
 use super::player::STRAIGHT_COORDINATES;
 use super::press::bound_buttons;
-use super::stress::{CASE_COUNT, GROUND_COUNT, PadKind, nominal_trials};
+use super::stress::{CASE_COUNT, GET_UP_SECS, GROUND_COUNT, PadKind, nominal_trials};
 use super::trial::Gait;
 
 /// How much is measured.
@@ -41,6 +41,8 @@ pub struct Effort {
     pub roamers: usize,
     /// Seconds each of them roams.
     pub roam_secs: f32,
+    /// Ragdoll drops on each uneven ground.
+    pub drops_uneven: usize,
     /// How exactly the largest push is found in each gait, newton.
     pub push_step_newton: f32,
 }
@@ -63,6 +65,7 @@ impl Effort {
         pad_secs: 60.0,
         roamers: 16,
         roam_secs: 60.0,
+        drops_uneven: 200,
         push_step_newton: 10.0,
     };
 
@@ -83,6 +86,7 @@ impl Effort {
         pad_secs: 30.0,
         roamers: 4,
         roam_secs: 20.0,
+        drops_uneven: 12,
         push_step_newton: 50.0,
     };
 
@@ -114,6 +118,7 @@ impl Effort {
             Section::Legs => of(gaits * self.settled, 8.0),
             Section::RandomPad => of(PadKind::ALL.len() * self.pad_players, self.pad_secs),
             Section::Terrain => roamed * GROUND_COUNT as f32,
+            Section::GetUp => of(GROUND_COUNT * self.drops_uneven, GET_UP_SECS),
             Section::Robustness => roamed * CASE_COUNT as f32,
             Section::Pushes => gaits as f32 * nominal_trials(self.push_step_newton, self.settled) * 3.0,
         }

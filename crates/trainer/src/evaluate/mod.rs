@@ -1,6 +1,7 @@
 //! Measures of a pack, through the same controller as a game: survival along paths, reached speed, get-up, roll,
 //! pushes, distances between parameters, how a motion looks beside its clip, and what a player feels: turns, starts, stops, drift.
 
+mod drop;
 mod effort;
 mod eval_character;
 mod layers;

@@ -17,8 +17,8 @@ use super::response::{
     measure_turns,
 };
 use super::stress::{
-    FallReport, RandomPadReport, SidesReport, measure_pushes, measure_random_pad, measure_robustness,
-    measure_terrain,
+    FallReport, GetUpReport, RandomPadReport, SidesReport, measure_get_up_on_terrain, measure_pushes,
+    measure_random_pad, measure_robustness, measure_terrain,
 };
 use super::trial::Gait;
 use super::{Rig, Section};
@@ -68,6 +68,9 @@ pub struct PlayerReport {
     /// By ground, and in it by gait.
     #[serde(skip_serializing_if = "BTreeMap::is_empty")]
     pub terrain: By<By<FallReport>>,
+    /// By ground.
+    #[serde(skip_serializing_if = "BTreeMap::is_empty")]
+    pub terrain_get_up: By<GetUpReport>,
     /// By case, and in it by gait.
     #[serde(skip_serializing_if = "BTreeMap::is_empty")]
     pub robustness: By<By<FallReport>>,
@@ -124,6 +127,7 @@ impl PlayerReport {
             Section::Legs => self.measure_legs(rig),
             Section::RandomPad => self.random_pad = measure_random_pad(rig),
             Section::Terrain => self.terrain = measure_terrain(rig)?,
+            Section::GetUp => self.terrain_get_up = measure_get_up_on_terrain(rig)?,
             Section::Robustness => self.robustness = measure_robustness(rig)?,
             Section::Pushes => {
                 let skeleton = rig.pack.skeleton();

@@ -35,6 +35,8 @@ pub enum Section {
     RandomPad,
     /// Uneven ground in every gait.
     Terrain,
+    /// Getting up on uneven ground.
+    GetUp,
     /// A body and a world that differ from training.
     Robustness,
     /// Pushes from four sides on torso and pelvis.
@@ -43,7 +45,7 @@ pub enum Section {
 
 impl Section {
     /// All sections, in the order in which they are measured.
-    pub const ALL: [Section; 18] = [
+    pub const ALL: [Section; 19] = [
         Section::Paths,
         Section::Upright,
         Section::Push,
@@ -60,6 +62,7 @@ impl Section {
         Section::Legs,
         Section::RandomPad,
         Section::Terrain,
+        Section::GetUp,
         Section::Robustness,
         Section::Pushes,
     ];
@@ -84,6 +87,7 @@ impl Section {
             Section::Legs => "legs",
             Section::RandomPad => "random_pad",
             Section::Terrain => "terrain",
+            Section::GetUp => "get_up",
             Section::Robustness => "robustness",
             Section::Pushes => "pushes",
         }

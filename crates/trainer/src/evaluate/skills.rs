@@ -3,12 +3,13 @@
 use std::sync::Arc;
 
 use glam::Vec2;
-use physics_bridge::{Model, Pose};
+use physics_bridge::Model;
 use policy_core::training::TARGET_RANGE_METRES;
-use policy_core::{CharacterPack, CharacterState, Command, Goal, JointTargets, SkillEnd, SkillId};
+use policy_core::{CharacterPack, CharacterState, Command, Goal, SkillEnd, SkillId};
 use rayon::prelude::*;
 use serde::Serialize;
 
+use super::drop::drop_limp;
 use super::eval_character::{EvalCharacter, SETTLE_SECS};
 use crate::Rng;
 use crate::env::DT_SECS;
@@ -66,7 +67,7 @@ pub fn measure_get_up(
 fn gets_up(model: &Model, pack: &Arc<CharacterPack>, skill: SkillId, seed: u64) -> (bool, Option<f32>) {
     let mut eval = EvalCharacter::new(model, pack, "idle");
     let mut rng = Rng::new(seed, 11);
-    if !drop_limp(&mut eval, &mut rng) {
+    if !drop_on_the_spot(&mut eval, &mut rng) {
         return (false, None);
     }
     let mut command = Command { skill: Some(skill), ..Command::default() };
@@ -86,32 +87,10 @@ fn gets_up(model: &Model, pack: &Arc<CharacterPack>, skill: SkillId, seed: u64) 
     (stood >= 1.0, ended)
 }
 
-/// Drops the character in a random attitude, limp, and lets it come to rest for two seconds.
-fn drop_limp(eval: &mut EvalCharacter, rng: &mut Rng) -> bool {
-    let turn = glam::Quat::from_euler(glam::EulerRot::ZYX, rng.angle(), rng.range(-1.6, 1.6), rng.angle());
-    let skeleton = eval.character.model().skeleton().clone();
-    let mut pose = Pose::new(&skeleton);
-    pose.qpos[2] = 0.8;
-    pose.qpos[3..7].copy_from_slice(&[turn.w, turn.x, turn.y, turn.z].map(f64::from));
-    for (angle, joint) in pose.qpos[7..].iter_mut().zip(skeleton.joints()) {
-        *angle = f64::from(0.5 * rng.range(joint.range[0], joint.range[1]));
-    }
-    if eval.character.set_pose(&pose.qpos, &pose.qvel).is_err() {
-        return false;
-    }
-    let mut targets = JointTargets::new(&skeleton);
-    for _ in 0..(2.0 / DT_SECS) as u32 {
-        eval.character.pose_into(&mut pose);
-        for (target, angle) in targets.iter_mut().zip(&pose.qpos[7..]) {
-            *target = *angle as f32;
-        }
-        eval.character.actuate(&targets);
-        if eval.character.step().is_err() {
-            return false;
-        }
-    }
+fn drop_on_the_spot(eval: &mut EvalCharacter, rng: &mut Rng) -> bool {
+    let sound = drop_limp(&mut eval.character, Vec2::ZERO, rng);
     eval.character.sense_into(&mut eval.state);
-    true
+    sound
 }
 
 /// States of an episodic skill from its start until half a second after its end: the skill that raises a fallen character
@@ -131,7 +110,7 @@ pub fn watch_skill(
         let body = pack.skeleton().body_named(FACING).unwrap_or_else(|| pack.skeleton().root());
         let sign = if on_its_face { -1.0 } else { 1.0 };
         let lies = |s: &EvalCharacter| sign * (s.state.body(body).rotation * glam::Vec3::X).z > 0.5;
-        let lying = (0..100).any(|seed| drop_limp(&mut eval, &mut Rng::new(seed, 11)) && lies(&eval));
+        let lying = (0..100).any(|seed| drop_on_the_spot(&mut eval, &mut Rng::new(seed, 11)) && lies(&eval));
         if !lying {
             return Vec::new();
         }

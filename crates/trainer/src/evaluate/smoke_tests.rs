@@ -22,6 +22,7 @@ const TINY: Effort = Effort {
     straight: 1,
     pressed: 1,
     pad_players: 1,
+    drops_uneven: 1,
     pad_secs: 1.0,
     roamers: 1,
     roam_secs: 1.0,
@@ -29,7 +30,7 @@ const TINY: Effort = Effort {
     ..Effort::QUICK
 };
 
-const PLAYER: [Section; 12] = [
+const PLAYER: [Section; 13] = [
     Section::Turns,
     Section::Starts,
     Section::Stops,
@@ -40,6 +41,7 @@ const PLAYER: [Section; 12] = [
     Section::Legs,
     Section::RandomPad,
     Section::Terrain,
+    Section::GetUp,
     Section::Robustness,
     Section::Pushes,
 ];
@@ -61,7 +63,7 @@ fn pack(falls: bool) -> Arc<CharacterPack> {
     let end = EndEntry {
         threshold: 0.5,
         hysteresis: 0.1,
-        hold_seconds: 0.0,
+        hold_seconds: 0.1,
         minimum_seconds: 0.0,
         limit_seconds: 0.5,
         minimum_height: 0.0,
@@ -93,7 +95,7 @@ fn pack(falls: bool) -> Arc<CharacterPack> {
         paths: vec![path("speed", ["idle", "walk", "run"]), path("stance", ["idle", "walk", "crawl"])],
         discriminators: Vec::new(),
         skills: vec![roll],
-        recovery: None,
+        recovery: falls.then(|| "roll".into()),
     };
     let layer = |inputs: usize, outputs: usize| {
         Layer::from_input_major(inputs, outputs, &vec![0.0; inputs * outputs], &vec![0.0; outputs]).unwrap()
@@ -152,12 +154,19 @@ fn a_character_that_lies_on_the_ground_never_turns_and_has_all_keys() {
 #[test]
 fn a_character_that_falls_on_the_way_to_a_gait_is_left_out_and_falls_are_counted() {
     let effort = Effort { pad_secs: 5.0, roam_secs: 5.0, ..TINY };
-    let sections = [Section::Turns, Section::Legs, Section::RandomPad, Section::Terrain, Section::Pushes];
+    let sections = [
+        Section::Turns,
+        Section::Legs,
+        Section::RandomPad,
+        Section::Terrain,
+        Section::GetUp,
+        Section::Pushes,
+    ];
     let report = measured(true, &effort, &sections).player;
     assert!(report.response.turns["walk"]["turn_90"].trials == 0, "{:?}", report.response.turns);
-    assert!(
-        report.random_pad["stick"].falls_per_minute > 0.0 || report.terrain["steps_10cm"]["run"].falls > 0
-    );
+    assert!(report.random_pad["stick"].falls_per_minute > 0.0, "{:?}", report.random_pad);
+    assert!(report.terrain["steps_10cm"]["run"].falls > 0, "{:?}", report.terrain);
+    assert_eq!(report.terrain_get_up["steps_10cm"].success, 0.0);
     assert_eq!(report.push_torso["walk"].left_newton, 0.0);
     assert!(report.foot_slide_mps.is_empty());
 }

@@ -22,6 +22,7 @@ pub fn table(report: &PlayerReport) -> String {
     legs(&mut text, report);
     random_pad(&mut text, report);
     falls(&mut text, "falls a minute on uneven ground", &report.terrain);
+    get_up(&mut text, report);
     falls(&mut text, "falls a minute, body and world changed", &report.robustness);
     pushes(&mut text, "push on the torso, newton", &report.push_torso);
     pushes(&mut text, "push on the pelvis, newton", &report.push_pelvis);
@@ -118,7 +119,7 @@ fn presses(text: &mut String, report: &PlayerReport) {
         line(text, "", counts.into_iter().chain([rise.median_s, rise.by_itself_median_s].map(number)));
     }
     if !report.button_presses.is_empty() {
-        head(text, "press", ["started", "succeeded", "median, s", "below 0.4 m", "falls"]);
+        head(text, "press", ["started", "refused", "succeeded", "median, s", "low", "falls"]);
     }
     for (gait, buttons) in &report.button_presses {
         for press in buttons.values().filter(|press| press.skill.is_some()) {
@@ -135,10 +136,10 @@ fn presses(text: &mut String, report: &PlayerReport) {
     }
 }
 
-fn press_columns(press: &PressReport) -> [String; 5] {
+fn press_columns(press: &PressReport) -> [String; 6] {
     let count = |count| share(count, press.trials);
-    let (started, succeeded) = (count(press.started), count(press.succeeded));
-    [started, succeeded, number(press.median_s), count(press.low), count(press.falls)]
+    let [started, refused, succeeded] = [press.started, press.refused, press.succeeded].map(count);
+    [started, refused, succeeded, number(press.median_s), count(press.low), count(press.falls)]
 }
 
 fn legs(text: &mut String, report: &PlayerReport) {
@@ -167,6 +168,15 @@ fn falls(text: &mut String, title: &str, cases: &BTreeMap<String, BTreeMap<Strin
     head(text, title, first.keys().map(String::as_str));
     for (case, gaits) in cases {
         line(text, case, gaits.values().map(|falls| number(Some(falls.falls_per_minute))));
+    }
+}
+
+fn get_up(text: &mut String, report: &PlayerReport) {
+    if !report.terrain_get_up.is_empty() {
+        head(text, "get up", ["success", "falls again", "median, s"]);
+    }
+    for (ground, get_up) in &report.terrain_get_up {
+        line(text, ground, [Some(get_up.success), Some(get_up.falls_again), get_up.median_s].map(number));
     }
 }
 

@@ -27,6 +27,8 @@ pub struct PressReport {
     pub trials: usize,
     /// Presses that started the skill.
     pub started: usize,
+    /// Presses that the controller refused.
+    pub refused: usize,
     /// Presses whose skill the discriminator ended, and that left the character without a fall for a second.
     pub succeeded: usize,
     /// Median of the seconds from the press until the skill had ended so; `None` when half of the presses did not get there.
@@ -50,6 +52,7 @@ pub fn measure_buttons(rig: &Rig<'_>) -> BTreeMap<String, BTreeMap<String, Press
                 skill: skill.map(|skill| rig.pack.skills()[skill.index()].name.clone()),
                 trials: presses.len(),
                 started: count(|press| press.started),
+                refused: count(|press| press.refused),
                 succeeded: count(|press| press.secs.is_some()),
                 median_s: median(presses.iter().map(|press| press.secs)),
                 low: count(|press| press.low),
@@ -90,6 +93,7 @@ pub fn button_name(button: Button) -> String {
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 struct Press {
     started: bool,
+    refused: bool,
     /// When the skill had ended well.
     secs: Option<f32>,
     low: bool,
@@ -111,6 +115,7 @@ fn press(rig: &Rig<'_>, from: &Settled, button: Button, skill: Option<SkillId>) 
         let report = trial.controller.report();
         press.low |= trial.pelvis_height() < LOW_METRES;
         press.started |= skill.is_some() && report.skill_started == skill;
+        press.refused |= report.skill_refused.is_some();
         match report.skill_ended {
             Some((ended, SkillEnd::Recognised)) if Some(ended) == skill => press.secs = Some(secs),
             Some(_) => press.secs = None,

@@ -1,6 +1,7 @@
 //! What a character survives: a pad at random, uneven ground, a body and a world that differ from training, pushes.
 
 mod bisect;
+mod get_up;
 mod pushes;
 mod random_pad;
 mod roam;
@@ -8,12 +9,14 @@ mod robustness;
 mod terrain;
 
 pub use bisect::largest;
+pub use get_up::{GetUpReport, measure_get_up_on_terrain};
 pub use pushes::{SidesReport, measure_pushes};
 pub use random_pad::{PadKind, RandomPadReport, measure_random_pad};
 pub use roam::FallReport;
 pub use robustness::measure_robustness;
 pub use terrain::measure_terrain;
 
+pub(super) use get_up::NOMINAL_SECS as GET_UP_SECS;
 pub(super) use pushes::nominal_trials;
 pub(super) use robustness::CASE_COUNT;
 pub(super) use terrain::GROUND_COUNT;

@@ -11,7 +11,7 @@ use crate::evaluate::Rig;
 const SEED: u32 = 7;
 
 /// Grounds and their names. Slopes are long hills of 7 degrees in the root mean square.
-const GROUNDS: [(&str, Terrain); 4] = [
+pub(super) const GROUNDS: [(&str, Terrain); 4] = [
     ("hills_35cm", Terrain::Wavy { height_m: 0.35, wavelength_m: 6.0, seed: SEED }),
     ("slopes_7deg", Terrain::Wavy { height_m: 1.92, wavelength_m: 20.0, seed: SEED }),
     ("steps_5cm", Terrain::Steps { rise_m: 0.05, run_m: 0.8, count: 6 }),
