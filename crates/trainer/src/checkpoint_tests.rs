@@ -109,6 +109,7 @@ fn a_slim_checkpoint_holds_discriminators_in_half_precision() {
     let count = network.parameters.len();
     let trained = Trained { network: network.clone(), adam: Adam::new(count) };
     with_discriminator.networks.insert("walk.discriminator".into(), trained);
+    let with_discriminator = Checkpoint::new(with_discriminator.networks, (1, 2, 3.0), 1e-4, Rng::new(1, 1));
     let [whole, slim] = [with_discriminator.clone(), with_discriminator.slim()].map(|checkpoint| {
         checkpoint.save(&path).unwrap();
         (std::fs::metadata(&path).unwrap().len(), Checkpoint::load(&path).unwrap())
