@@ -50,7 +50,7 @@ pub const ALL: &[(&str, Read)] = &[
 static HUMANOID: LazyLock<Model> =
     LazyLock::new(|| Model::from_mjcf(HUMANOID_MJCF).expect("the humanoid compiles"));
 
-/// The message of an error and of those below it, as the programs print them.
+/// The message of an error and of its sources, as the programs print them.
 fn told(error: impl Error) -> String {
     let mut message = error.to_string();
     let mut source = error.source();

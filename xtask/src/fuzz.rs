@@ -13,7 +13,7 @@ use serde_json::Value;
 use crate::setup::{self, Purpose};
 use crate::workspace::{Workspace, answers, output_of, run as run_command};
 
-/// What can be said about fuzzing.
+/// Arguments of `cargo xtask fuzz`.
 #[derive(Debug, Args)]
 pub struct FuzzArgs {
     /// The target to run; all of them when none is named.

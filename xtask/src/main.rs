@@ -21,7 +21,7 @@ use crate::workspace::{Workspace, run};
 
 /// Set-up, demo, checks and benchmarks of Policy Space.
 ///
-/// Two verbs are enough for most: `cargo xtask demo` and `cargo xtask test`. Each makes the machine ready first.
+/// Most users need two verbs: `cargo xtask demo` and `cargo xtask test`. Each makes the machine ready first.
 #[derive(Debug, Parser)]
 #[command(name = "cargo xtask", bin_name = "cargo xtask", arg_required_else_help = true)]
 struct Cli {
@@ -29,21 +29,21 @@ struct Cli {
     verb: Verb,
 }
 
-/// What can be asked for.
+/// The verbs of the program.
 #[derive(Debug, Subcommand)]
 enum Verb {
     /// Fetch libmujoco and install the system packages that are missing.
     ///
-    /// libmujoco 3.17.0 comes from its Python wheel, pinned by hash, and lands in third_party/mujoco.
-    /// POLICY_SPACE_MUJOCO_WHEEL=FILE takes a wheel that is already on this machine; MUJOCO_DYNAMIC_LINK_DIR=DIR
-    /// takes a libmujoco that is. Running it again costs nothing.
+    /// libmujoco 3.17.0 comes from its Python wheel, pinned by hash, and is put in third_party/mujoco.
+    /// POLICY_SPACE_MUJOCO_WHEEL=FILE uses a wheel that is already on this machine. MUJOCO_DYNAMIC_LINK_DIR=DIR uses
+    /// a libmujoco that is. Running it again is quick.
     Setup(SetupArgs),
     /// Set up, then run the demo.
     #[command(after_help = demo::HELP, disable_help_flag = true)]
     Demo(DemoArgs),
-    /// Set up, then run every check that CI runs, and say which of them failed.
+    /// Set up, then run every check that CI runs, and list how each ended.
     Test(TestArgs),
-    /// Check who may import whom.
+    /// Check which crate imports which.
     Imports,
     /// Check that items and fields have the names of the field, and that no source file is too long.
     Words,
@@ -53,22 +53,22 @@ enum Verb {
     Deny,
     /// Measure, and print a table or one JSON object.
     Bench(bench::BenchArgs),
-    /// Feed random bytes to the parsers; needs a nightly toolchain and cargo-fuzz.
+    /// Feed random bytes to the parsers. Needs a nightly toolchain and cargo-fuzz.
     Fuzz(fuzz::FuzzArgs),
-    /// Give broken files to everything that reads files, and report panics, aborts, hangs and too much memory.
+    /// Give broken files to every reader, and report panics, aborts, hangs and too much memory.
     ///
-    /// Each file is a sound one of the project with a fault put in. Time and memory of each reader are bounded. A file
-    /// of every finding is kept in out/hostile.
+    /// Each file is a sound file of the project with a fault put in. The time and memory of each reader are bounded.
+    /// One file of each finding is kept in out/hostile.
     Hostile(hostile::HostileArgs),
-    /// Ask the gamepad crate about connected pads: `cargo xtask pad doctor`.
+    /// List and test connected gamepads: `cargo xtask pad doctor`.
     Pad {
-        /// What to ask; `doctor` lists devices and shows what they report.
+        /// Arguments of the program `pad`. `doctor` lists devices and shows what they report.
         #[arg(trailing_var_arg = true, allow_hyphen_values = true, default_value = "doctor")]
         arguments: Vec<OsString>,
     },
 }
 
-/// What can be said about the set-up.
+/// Arguments of `cargo xtask setup`.
 #[derive(Debug, Args)]
 struct SetupArgs {
     /// Only say which system packages are missing.
@@ -76,15 +76,15 @@ struct SetupArgs {
     no_install: bool,
 }
 
-/// What can be said about the demo.
+/// Arguments of `cargo xtask demo`.
 #[derive(Debug, Args)]
 struct DemoArgs {
-    /// Handed on to the demo, but for --no-install.
+    /// Passed to the demo, except --no-install.
     #[arg(trailing_var_arg = true, allow_hyphen_values = true, value_name = "ARGUMENT")]
     arguments: Vec<OsString>,
 }
 
-/// What can be said about the checks.
+/// Arguments of `cargo xtask test`.
 #[derive(Debug, Args)]
 struct TestArgs {
     /// Only say which system packages are missing.

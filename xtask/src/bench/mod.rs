@@ -14,14 +14,14 @@ use serde_json::{Map, Value};
 use crate::setup::{self, Purpose};
 use crate::workspace::{Workspace, output_of};
 
-/// What can be said about benchmarks.
+/// Arguments of `cargo xtask bench`.
 #[derive(Debug, Args)]
 pub struct BenchArgs {
     #[command(subcommand)]
     subject: Subject,
 }
 
-/// What can be measured.
+/// The subjects of benchmarks.
 #[derive(Debug, Subcommand)]
 enum Subject {
     /// Nanoseconds to evaluate a policy, blend, tick and save, beside four inference libraries on the same network.
@@ -79,7 +79,7 @@ pub fn run(workspace: &Workspace, arguments: &BenchArgs) -> Result<()> {
     Ok(())
 }
 
-/// Has the demo measure itself and checks that it hands back what was promised.
+/// Runs a benchmark of the demo and checks that it returns the promised figures.
 fn demo_bench(workspace: &Workspace, verb: &str, promised: &[&str]) -> Result<Map<String, Value>> {
     let arguments = ["run", "--release", "-p", "viewer", "--bin", "policy-space", "--", verb, "--json"];
     let text = output_of(workspace.cargo().args(arguments))?;

@@ -1,4 +1,4 @@
-//! The checks themselves: which command each one is.
+//! The checks: the command of each.
 
 use std::path::Path;
 use std::process::Command;
@@ -17,7 +17,10 @@ const ADVISORIES: Step = Step { name: "security advisories", run: deny::advisori
 /// All checks in the order in which they run: quick ones first, the tests last, so that a run ends with theirs.
 pub const ALL: &[Step] = &[
     Step { name: "formatting", run: formatting },
-    Step { name: "who imports whom", run: |workspace| imports::check(workspace).map(|()| Verdict::Passed) },
+    Step {
+        name: "imports between crates",
+        run: |workspace| imports::check(workspace).map(|()| Verdict::Passed),
+    },
     Step { name: "names and lengths", run: |workspace| words::check(workspace).map(|()| Verdict::Passed) },
     RULES,
     ADVISORIES,
@@ -65,7 +68,7 @@ fn no_std(workspace: &Workspace, target: &str) -> Result<Verdict> {
     Ok(Verdict::Passed)
 }
 
-/// Runs the blends' tests, the pinned bits among them, on the plain code that no vector unit was detected for.
+/// Runs the tests of blends, with their pinned bits, on the code for processors without vector units.
 fn plain_bits(workspace: &Workspace) -> Result<Verdict> {
     run(workspace.cargo().args(["test", "-p", "policy-core", "--no-default-features", "--test", "blend"]))?;
     Ok(Verdict::Passed)

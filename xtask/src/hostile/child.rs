@@ -102,7 +102,7 @@ impl Reader {
         let (sender, answers) = channel();
         std::thread::spawn(move || {
             let mut lines = stdout.lines().map_while(Result::ok);
-            // Ends with the child, or when nobody listens any more.
+            // Ends with the child, or when the receiver is dropped.
             while lines.next().is_some_and(|line| sender.send(line).is_ok()) {}
         });
         Ok(Self { child, stdin, answers, stderr, bounds })

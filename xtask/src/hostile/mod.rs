@@ -27,7 +27,7 @@ use self::report::Report;
 use crate::setup::{self, Purpose, remove_folder};
 use crate::workspace::{Workspace, run as run_command};
 
-/// What can be said about hostile files.
+/// Arguments of `cargo xtask hostile`.
 #[derive(Debug, Args)]
 pub struct HostileArgs {
     /// Broken files in total, shared out evenly among the readers.
