@@ -69,7 +69,7 @@ fn pack(path: &Path) -> Result<(), String> {
     if pack.mjcf().is_some()
         && let Ok(model) = Model::for_pack(&pack)
     {
-        viewer::appearance::of_pack(&pack, &model);
+        let _ = viewer::appearance::of_pack(&pack, &model);
         walk_on(Character::new(&model));
     }
     Ok(())
