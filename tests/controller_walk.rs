@@ -1,23 +1,14 @@
 //! The controller in the physics: the recorded Walk policy, closed loop, against its recording.
 
-use std::hash::Hasher;
 use std::sync::Arc;
 
 use glam::Vec2;
-use integration_tests::HUMANOID_MJCF;
 use integration_tests::golden::{golden_walk, largest_difference};
-use physics_bridge::{Character, Model, Terrain};
-use policy_core::{
-    Body, CharacterPack, CharacterState, Command, Controller, ControllerConfig, Goal, GraphPosition,
-};
+use integration_tests::{DT_SECS, HUMANOID_MJCF, reference_pack};
+use physics_bridge::{Character, Model, StateHash, Terrain};
+use policy_core::{Command, Controller, ControllerConfig, Goal, GraphPosition, NodeId, PathId};
 
 const TOLERANCE: f32 = 1e-5;
-const DT: f32 = 1.0 / 30.0;
-
-/// The policies the recording was made with.
-fn reference_pack() -> Arc<CharacterPack> {
-    Arc::new(CharacterPack::from_bytes(include_bytes!("golden/reference.pack.safetensors")).unwrap())
-}
 
 fn walking() -> (Character, Controller) {
     let pack = reference_pack();
@@ -25,8 +16,7 @@ fn walking() -> (Character, Controller) {
     let controller = Controller::with_config(pack, ControllerConfig { start, ..ControllerConfig::default() });
     let mut character = Character::new(&Model::from_mjcf(HUMANOID_MJCF).unwrap());
     let first = &golden_walk().ticks[0];
-    let (qpos, qvel) = (first.qpos.as_slice().try_into().unwrap(), first.qvel.as_slice().try_into().unwrap());
-    character.set_pose(qpos, qvel).unwrap();
+    character.set_pose(&first.qpos, &first.qvel).unwrap();
     (character, controller)
 }
 
@@ -35,19 +25,17 @@ fn every_recorded_state_gives_the_recorded_input_action_and_targets() {
     let golden = golden_walk();
     let (mut character, mut controller) = walking();
     let command = Command { target: Some(Vec2::from_array(golden.target_world)), ..Command::default() };
-    let mut state = CharacterState::default();
+    let mut state = character.sensed().clone();
     for (index, tick) in golden.ticks.iter().enumerate() {
-        let (qpos, qvel) =
-            (tick.qpos.as_slice().try_into().unwrap(), tick.qvel.as_slice().try_into().unwrap());
-        character.set_pose(qpos, qvel).unwrap();
+        character.set_pose(&tick.qpos, &tick.qvel).unwrap();
         character.sense_into(&mut state);
-        let targets = controller.tick(&state, &command, DT).0;
+        let targets = controller.tick(&state, &command, DT_SECS).to_vec();
         let ctrl: Vec<f32> = tick.ctrl.iter().map(|&c| c as f32).collect();
         let scaling = controller.pack().action();
-        let action: Vec<f32> =
-            (0..28).map(|j| (targets[j] - scaling.centre()[j]) / scaling.gain()[j]).collect();
+        let scaled = targets.iter().zip(scaling.centre()).zip(scaling.gain());
+        let action: Vec<f32> = scaled.map(|((target, centre), gain)| (target - centre) / gain).collect();
         let compared = [
-            ("policy input", controller.policy_input().as_slice(), tick.policy_input.as_slice()),
+            ("policy input", controller.policy_input(), tick.policy_input.as_slice()),
             ("action", &action, &tick.action),
             ("ctrl", &targets, &ctrl),
         ];
@@ -63,12 +51,9 @@ fn walk_stays_up_for_ten_seconds_and_ends_where_the_recording_ends() {
     let golden = golden_walk();
     let (mut character, mut controller) = walking();
     let command = Command { target: Some(Vec2::from_array(golden.target_world)), ..Command::default() };
-    let mut state = CharacterState::default();
     for tick in 0..300 {
-        character.sense_into(&mut state);
-        character.actuate(controller.tick(&state, &command, DT));
-        character.step().unwrap();
-        let height = state.body(Body::Pelvis).position.z;
+        character.control_tick(&mut controller, &command, DT_SECS).unwrap();
+        let height = character.sensed().root().position.z;
         assert!(height > 0.7 && !controller.report().fallen, "pelvis at {height} m in tick {tick}");
     }
     let end = character.pose().qpos;
@@ -87,22 +72,19 @@ fn hash_of_a_run(terrain: Terrain) -> u64 {
     let model = Model::from_mjcf(HUMANOID_MJCF).unwrap().with_terrain(terrain).unwrap();
     let mut character = Character::new(&model);
     let mut controller = Controller::new(Arc::clone(&pack));
-    controller.place_at(GraphPosition::node(1));
-    let mut state = CharacterState::default();
-    let mut hasher = std::hash::DefaultHasher::new();
+    assert!(controller.place_at(GraphPosition::node(NodeId::new(1))));
+    let mut hash = StateHash::default();
     for tick in 0..150u16 {
-        let seconds = f32::from(tick) * DT;
+        let seconds = f32::from(tick) * DT_SECS;
         let command = Command {
             target: Some(Vec2::new(4.0 - seconds, seconds)),
-            goal: Goal::Path { path: 0, coordinate: 1.0 - 0.1 * seconds },
+            goal: Goal::Path { path: PathId::new(0), coordinate: 1.0 - 0.1 * seconds },
             ..Command::default()
         };
-        character.sense_into(&mut state);
-        character.actuate(controller.tick(&state, &command, DT));
-        character.step().unwrap();
-        character.pose().qpos.iter().for_each(|q| hasher.write_u64(q.to_bits()));
+        character.control_tick(&mut controller, &command, DT_SECS).unwrap();
+        hash.absorb(&character.pose());
     }
-    hasher.finish()
+    hash.value()
 }
 
 #[test]

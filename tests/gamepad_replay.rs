@@ -1,19 +1,16 @@
 //! A recorded pad session gives the same states at the same ticks every time, and so the same demo.
 //!
-//! The recording is read from a file, played at the control rate, and every state is hashed. `drive` is what a
-//! consumer is given: one `GamepadState` for each control tick. What a demo makes of the states is deterministic on
-//! its own (its `state_hash`), so a recording drives it to the same hash every time; a demo takes a recording by
-//! calling `VirtualPad::report_at(tick / 30)` where it calls `Script::state_at`.
+//! The recording is read from a file and played at the control rate: one `GamepadState` for each control tick. The
+//! demo is deterministic given those states (its `state_hash`), so a recording drives it to the same hash every time.
 
 use std::sync::Arc;
 
 use gamepad::recording::{PadEvent, RecordedPad, Recorder, Recording, VirtualPad};
 use gamepad::{Bus, Button, GamepadState, PadId};
-use integration_tests::HUMANOID_MJCF;
-use physics_bridge::{Character, Model};
-use policy_core::{Bindings, CharacterPack, CharacterState, CommandMapper, Controller, Heading};
+use integration_tests::{CONTROL_HZ, DT_SECS, HUMANOID_MJCF, reference_pack};
+use physics_bridge::{Character, Model, StateHash};
+use policy_core::{Bindings, CommandMapper, Controller, Heading};
 
-const CONTROL_HZ: f64 = 30.0;
 const SECONDS: f64 = 8.0;
 
 /// A pad session as it comes from hardware: reports every 4 ms with jitter, a stick that rests off its centre and
@@ -54,41 +51,34 @@ fn drive(recording: Recording) -> Vec<GamepadState> {
     (0..ticks).map(|tick| pad.report_at(f64::from(tick) / CONTROL_HZ).state).collect()
 }
 
-/// FNV-1a over the bits of every value.
+/// The bits of every value, hashed.
 fn hash(states: &[GamepadState]) -> u64 {
-    let mut hash = 0xcbf2_9ce4_8422_2325_u64;
-    let mut add = |bits: u32| {
-        for byte in bits.to_le_bytes() {
-            hash = (hash ^ u64::from(byte)).wrapping_mul(0x0100_0000_01b3);
-        }
-    };
+    let mut hash = StateHash::default();
     for state in states {
         let sticks = state.left_stick.into_iter().chain(state.right_stick);
-        sticks.chain([state.left_trigger, state.right_trigger]).for_each(|value| add(value.to_bits()));
-        add(state.buttons.bits());
+        let values = sticks.chain([state.left_trigger, state.right_trigger]);
+        values.for_each(|value| hash.absorb_bits(value.to_bits().into()));
+        hash.absorb_bits(state.buttons.bits().into());
     }
-    hash
+    hash.value()
 }
 
-/// What the recording makes of a character in the physics: every joint position at every tick, hashed.
+/// What the recording makes of a character in the physics: every pose at every tick, hashed, and how far it got, metres.
 fn walked(states: &[GamepadState]) -> (u64, f64) {
-    let pack = CharacterPack::from_bytes(include_bytes!("golden/reference.pack.safetensors")).unwrap();
+    let pack = reference_pack();
     let mut mapper = CommandMapper::new(&pack, &Bindings::default());
-    let mut controller = Controller::new(Arc::new(pack));
+    let mut controller = Controller::new(Arc::clone(&pack));
     let mut character = Character::new(&Model::from_mjcf(HUMANOID_MJCF).unwrap());
-    let mut state = CharacterState::default();
-    let mut hash = 0xcbf2_9ce4_8422_2325_u64;
+    let mut state = character.sensed().clone();
+    let mut hash = StateHash::default();
     for pad in states {
         character.sense_into(&mut state);
         let command = mapper.map(pad, Heading::FORWARD, &state);
-        character.actuate(controller.tick(&state, &command, (1.0 / CONTROL_HZ) as f32));
-        character.step().unwrap();
-        for value in character.pose().qpos {
-            hash = (hash ^ value.to_bits()).wrapping_mul(0x0100_0000_01b3);
-        }
+        character.control_tick(&mut controller, &command, DT_SECS).unwrap();
+        hash.absorb(&character.pose());
     }
     let end = character.pose().qpos;
-    (hash, end[0].hypot(end[1]))
+    (hash.value(), end[0].hypot(end[1]))
 }
 
 const DUALSENSE: PadId = PadId { vendor: 0x054c, product: 0x0ce6, bus: Bus::Usb };

@@ -3,6 +3,8 @@
 
 use serde::Deserialize;
 
+pub mod port;
+
 /// The whole recording.
 #[derive(Debug, Deserialize)]
 pub struct GoldenWalk {

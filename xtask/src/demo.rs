@@ -1,4 +1,4 @@
-//! Runs the demo: set-up, then the release binary `policy-space`, with the arguments handed on.
+//! Runs the demo: set-up, then the release binary `policy-space`, with the arguments of the user.
 
 use std::ffi::{OsStr, OsString};
 use std::process::ExitCode;
@@ -10,7 +10,7 @@ use crate::workspace::{Workspace, status_of};
 
 /// What `cargo xtask demo --help` says.
 pub const HELP: &str = "\
-Set up, then run the demo. Everything but --no-install and --help is handed on to it.
+Set up, then run the demo. Every argument but --no-install and --help is passed to it.
 
 Usage: cargo xtask demo [--no-install] [ARGUMENT...]
 

@@ -13,7 +13,7 @@ use serde_json::Value;
 use crate::setup::{self, Purpose};
 use crate::workspace::{Workspace, answers, output_of, run as run_command};
 
-/// What can be said about fuzzing.
+/// Arguments of `cargo xtask fuzz`.
 #[derive(Debug, Args)]
 pub struct FuzzArgs {
     /// The target to run; all of them when none is named.
@@ -49,7 +49,7 @@ pub fn run(workspace: &Workspace, arguments: &FuzzArgs) -> Result<()> {
                 .env_remove("CARGO")
                 .args(["run", "nightly", "cargo", "fuzz", "run", &target, "--"])
                 .arg(format!("-max_total_time={seconds:.0}"))
-                .args(length_limit(&target)),
+                .arg(length_limit(&target)),
         )?;
     }
     Ok(())
@@ -71,9 +71,13 @@ fn target_names(metadata: &str) -> Result<Vec<String>> {
     Ok(names.map(str::to_owned).collect())
 }
 
-/// Input of most targets is short, and bounds what one may take; a pack alone is longer than 4 KiB.
-fn length_limit(target: &str) -> Option<&'static str> {
-    (target != "pack").then_some("-max_len=4096")
+/// Input of most targets is short, and bounds what one may take; packs and their manifests alone are longer than 4 KiB.
+fn length_limit(target: &str) -> &'static str {
+    match target {
+        "pack" => "-max_len=1000000",
+        "manifest" => "-max_len=65536",
+        _ => "-max_len=4096",
+    }
 }
 
 /// Starts a target's corpus with what the project ships: sound input is the best to mutate.
@@ -81,7 +85,8 @@ fn seed(root: &Path, target: &str) -> Result<()> {
     let corpus = root.join("fuzz/corpus").join(target);
     fs::create_dir_all(&corpus).with_context(|| format!("create {}", corpus.display()))?;
     let shipped = match target {
-        "pack" | "manifest" => files_with_extension(&root.join("assets"), "safetensors")?,
+        // The small pack, whose tensors the target of manifests uses.
+        "pack" | "manifest" => files_with_extension(&root.join("tests/golden"), "safetensors")?,
         "script" => files_with_extension(&root.join("assets/scripts"), "ron")?,
         _ => Vec::new(),
     };

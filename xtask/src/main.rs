@@ -6,6 +6,7 @@ mod bench;
 mod checks;
 mod demo;
 mod fuzz;
+mod hostile;
 mod setup;
 mod workspace;
 
@@ -20,7 +21,7 @@ use crate::workspace::{Workspace, run};
 
 /// Set-up, demo, checks and benchmarks of Policy Space.
 ///
-/// Two verbs are enough for most: `cargo xtask demo` and `cargo xtask test`. Each makes the machine ready first.
+/// Most users need two verbs: `cargo xtask demo` and `cargo xtask test`. Each makes the machine ready first.
 #[derive(Debug, Parser)]
 #[command(name = "cargo xtask", bin_name = "cargo xtask", arg_required_else_help = true)]
 struct Cli {
@@ -28,41 +29,46 @@ struct Cli {
     verb: Verb,
 }
 
-/// What can be asked for.
+/// The verbs of the program.
 #[derive(Debug, Subcommand)]
 enum Verb {
     /// Fetch libmujoco and install the system packages that are missing.
     ///
-    /// libmujoco 3.17.0 comes from its Python wheel, pinned by hash, and lands in third_party/mujoco.
-    /// POLICY_SPACE_MUJOCO_WHEEL=FILE takes a wheel that is already on this machine; MUJOCO_DYNAMIC_LINK_DIR=DIR
-    /// takes a libmujoco that is. Running it again costs nothing.
+    /// libmujoco 3.17.0 comes from its Python wheel, pinned by hash, and is put in third_party/mujoco.
+    /// POLICY_SPACE_MUJOCO_WHEEL=FILE uses a wheel that is already on this machine. MUJOCO_DYNAMIC_LINK_DIR=DIR uses
+    /// a libmujoco that is. Running it again is quick.
     Setup(SetupArgs),
     /// Set up, then run the demo.
     #[command(after_help = demo::HELP, disable_help_flag = true)]
     Demo(DemoArgs),
-    /// Set up, then run every check that CI runs, and say which of them failed.
+    /// Set up, then run every check that CI runs, and list how each ended.
     Test(TestArgs),
-    /// Check who may import whom.
+    /// Check which crate imports which.
     Imports,
-    /// Run cargo-deny: licences, banned crates and sources.
-    Deny {
-        /// Install cargo-deny first when it is missing; takes some minutes.
-        #[arg(long)]
-        install: bool,
-    },
+    /// Check that items and fields have the names of the field, and that no source file is too long.
+    Words,
+    /// Check licences, banned crates, sources and security advisories with cargo-deny.
+    ///
+    /// Installs the pinned cargo-deny in third_party/tools first; this takes about two minutes, once.
+    Deny,
     /// Measure, and print a table or one JSON object.
     Bench(bench::BenchArgs),
-    /// Feed random bytes to the parsers; needs a nightly toolchain and cargo-fuzz.
+    /// Feed random bytes to the parsers. Needs a nightly toolchain and cargo-fuzz.
     Fuzz(fuzz::FuzzArgs),
-    /// Ask the gamepad crate about connected pads: `cargo xtask pad doctor`.
+    /// Give broken files to every reader, and report panics, aborts, hangs and too much memory.
+    ///
+    /// Each file is a sound file of the project with a fault put in. The time and memory of each reader are bounded.
+    /// One file of each finding is kept in out/hostile.
+    Hostile(hostile::HostileArgs),
+    /// List and test connected gamepads: `cargo xtask pad doctor`.
     Pad {
-        /// What to ask; `doctor` lists devices and shows what they report.
+        /// Arguments of the program `pad`. `doctor` lists devices and shows what they report.
         #[arg(trailing_var_arg = true, allow_hyphen_values = true, default_value = "doctor")]
         arguments: Vec<OsString>,
     },
 }
 
-/// What can be said about the set-up.
+/// Arguments of `cargo xtask setup`.
 #[derive(Debug, Args)]
 struct SetupArgs {
     /// Only say which system packages are missing.
@@ -70,26 +76,23 @@ struct SetupArgs {
     no_install: bool,
 }
 
-/// What can be said about the demo.
+/// Arguments of `cargo xtask demo`.
 #[derive(Debug, Args)]
 struct DemoArgs {
-    /// Handed on to the demo, but for --no-install.
+    /// Passed to the demo, except --no-install.
     #[arg(trailing_var_arg = true, allow_hyphen_values = true, value_name = "ARGUMENT")]
     arguments: Vec<OsString>,
 }
 
-/// What can be said about the checks.
+/// Arguments of `cargo xtask test`.
 #[derive(Debug, Args)]
 struct TestArgs {
     /// Only say which system packages are missing.
     #[arg(long)]
     no_install: bool,
-    /// Count a check that cannot run here (no cross target, no cargo-deny) as failed.
+    /// Count a skipped check (no cross target, no network for the advisories) as failed.
     #[arg(long)]
     strict: bool,
-    /// Install cargo-deny when it is missing, as is done where CI is set; takes some minutes.
-    #[arg(long)]
-    deny: bool,
 }
 
 fn main() -> ExitCode {
@@ -112,14 +115,14 @@ fn dispatch(verb: Verb) -> Result<ExitCode> {
         Verb::Demo(arguments) => return demo::run(&workspace, arguments.arguments),
         Verb::Test(arguments) => {
             setup::prepare(&workspace, Purpose::Tests, !arguments.no_install)?;
-            let install_deny = arguments.deny || std::env::var_os("CI").is_some();
-            let options = checks::Options { strict: arguments.strict, install_deny };
-            return Ok(checks::run(&workspace, options));
+            return Ok(checks::run(&workspace, checks::ALL, arguments.strict));
         }
         Verb::Imports => checks::imports::check(&workspace)?,
-        Verb::Deny { install } => checks::deny::check(&workspace, install)?,
+        Verb::Words => checks::words::check(&workspace)?,
+        Verb::Deny => return Ok(checks::run(&workspace, checks::DENY, false)),
         Verb::Bench(arguments) => bench::run(&workspace, &arguments)?,
         Verb::Fuzz(arguments) => fuzz::run(&workspace, &arguments)?,
+        Verb::Hostile(arguments) => hostile::run(&workspace, &arguments)?,
         Verb::Pad { arguments } => {
             run(workspace
                 .cargo()

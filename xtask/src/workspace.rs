@@ -1,6 +1,6 @@
-//! Where things lie in the workspace, and how other programs are run from it.
+//! The folders of the workspace, and how other programs are run from it.
 //!
-//! Everything that `xtask` itself says goes to stderr, so that stdout belongs to the program that was asked for.
+//! Everything that `xtask` itself says goes to stderr, so that stdout belongs to the program that it runs.
 
 use std::ffi::OsStr;
 use std::path::{Path, PathBuf};
@@ -77,7 +77,7 @@ pub fn run(command: &mut Command) -> Result<()> {
     Ok(())
 }
 
-/// Runs a command to its end and hands back how it ended.
+/// Runs a command to its end and returns its exit status.
 ///
 /// # Errors
 /// When it cannot be started.
@@ -85,7 +85,7 @@ pub fn status_of(command: &mut Command) -> Result<ExitStatus> {
     command.status().with_context(|| format!("start `{}`", shown(command)))
 }
 
-/// Runs a command and hands back what it wrote to stdout; its stderr goes through.
+/// Runs a command and returns what it wrote to stdout. Its stderr is passed through.
 ///
 /// # Errors
 /// When it cannot be started, ends with another status than 0 or writes something else than UTF-8.
@@ -99,7 +99,7 @@ pub fn output_of(command: &mut Command) -> Result<String> {
     String::from_utf8(output.stdout).with_context(|| format!("read what `{}` wrote", shown(command)))
 }
 
-/// Whether a program can be started and ends well; what it writes is dropped.
+/// Whether a program can be started and succeeds. Its output is dropped.
 pub fn answers(command: &mut Command) -> bool {
     command
         .stdin(Stdio::null())

@@ -1,4 +1,4 @@
-//! Back ends: where devices and their reports come from.
+//! Back ends: the sources of devices and reports.
 
 #[cfg(feature = "gilrs")]
 mod gilrs;
@@ -14,12 +14,12 @@ pub use hid::HidBackend;
 
 use crate::device::{DeviceEvent, DeviceKey};
 
-/// A source of pads. Nothing here waits: a back end that must wait has a thread of its own.
+/// A source of pads. No call waits: a back end that must wait uses a thread of its own.
 pub trait PadBackend {
-    /// Appends everything that happened since the last call.
+    /// Appends all events since the last call.
     fn poll_into(&mut self, events: &mut Vec<(Instant, DeviceEvent)>);
 
-    /// Sends an output report to a device; false when the device can't take it.
+    /// Sends an output report to a device. Returns false when the device doesn't accept it.
     fn send(&mut self, key: DeviceKey, report: &[u8]) -> bool;
 }
 
@@ -30,17 +30,17 @@ pub enum BackendError {
     /// hidapi can't start.
     #[error("hidapi cannot start: {message}")]
     Hid {
-        /// What it says.
+        /// Its message.
         message: String,
     },
     /// gilrs can't start.
     #[error("gilrs cannot start: {message}")]
     Gilrs {
-        /// What it says.
+        /// Its message.
         message: String,
     },
-    /// The system gives no thread.
-    #[error("no thread for reading pads: {0}")]
+    /// The system can't start a thread.
+    #[error("cannot start a thread for reading pads: {0}")]
     Thread(std::io::Error),
 }
 
@@ -50,7 +50,7 @@ impl From<std::io::Error> for BackendError {
     }
 }
 
-/// A key that no device had before.
+/// A key that was not used before.
 #[cfg(any(feature = "hidapi", feature = "gilrs"))]
 fn new_key() -> DeviceKey {
     use std::sync::atomic::{AtomicU64, Ordering};

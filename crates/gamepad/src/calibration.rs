@@ -1,7 +1,7 @@
 //! From raw controls to a pad's state: rest positions and dead zones.
 //!
-//! Sticks have a radial dead zone: nothing inside `inner`, everything outside `outer`, a straight line between, so
-//! that there is no jump and the direction is kept. Triggers the same on their one axis.
+//! Sticks have a radial dead zone: 0 inside `inner`, 1 outside `outer`, linear between, so that there is no jump and
+//! the direction is kept. Triggers have the same on one axis.
 
 mod rest;
 
@@ -9,7 +9,7 @@ pub use rest::{NotAtRest, RestCalibrator};
 
 use crate::GamepadState;
 
-/// An inner and an outer threshold: at most `inner` is 0, at least `outer` is 1, a straight line between.
+/// An inner and an outer threshold: values up to `inner` become 0, from `outer` on 1, linear between.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Zone {
     inner: f32,
@@ -48,13 +48,13 @@ impl Zone {
         self.outer
     }
 
-    /// This zone with its inner threshold at least `inner`, as far as the outer one allows.
+    /// This zone with an inner threshold of at least `inner`, limited by the outer one.
     fn widened(self, inner: f32) -> Self {
         let most = (self.outer - 0.05).max(self.inner);
         Self { inner: self.inner.max(inner.min(most)), ..self }
     }
 
-    /// Rescales a magnitude to [0, 1]. Not finite: 0.
+    /// Rescales a magnitude to [0, 1]; 0 if it is not finite.
     #[must_use]
     pub fn rescaled(self, magnitude: f32) -> f32 {
         if !magnitude.is_finite() {
@@ -64,7 +64,7 @@ impl Zone {
     }
 }
 
-/// The thresholds of a pad's four analog controls; set them as you like.
+/// The thresholds of a pad's four analog controls.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct DeadZones {
     /// Left stick, radial.
@@ -85,7 +85,7 @@ impl Default for DeadZones {
     }
 }
 
-/// Where a pad's analog controls rest, in raw units.
+/// Rest positions of a pad's analog controls, in raw units.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Rest {
     /// Left stick.
@@ -101,7 +101,7 @@ pub struct Rest {
 /// Rest positions and dead zones of one pad.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Calibration {
-    /// Where the controls rest; zero until measured.
+    /// Rest positions; zero until measured.
     pub rest: Rest,
     /// Thresholds around the rest positions.
     pub zones: DeadZones,
@@ -122,7 +122,7 @@ impl Calibration {
     }
 }
 
-/// Each half of an axis is stretched, so that its end stays at 1 whatever the rest position is.
+/// Stretches each half of an axis, so that its end stays at 1 for any rest position.
 fn from_rest(value: f32, rest: f32) -> f32 {
     let reach = if value < rest { 1.0 + rest } else { 1.0 - rest };
     (value - rest) / reach.max(0.1)

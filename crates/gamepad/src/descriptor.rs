@@ -1,7 +1,7 @@
 //! HID report descriptors: which bits of which input report mean what.
 //!
-//! Keeps input fields only. Every loop is bounded by the length of the descriptor and the limits below, whatever
-//! the bytes are. Source: *Device Class Definition for Human Interface Devices 1.11*, section 6.2.2.
+//! Keeps input fields only. Every loop is bounded by the length of the descriptor and the limits below, for any
+//! bytes. Source: *Device Class Definition for Human Interface Devices 1.11*, section 6.2.2.
 
 mod items;
 mod state;
@@ -57,14 +57,14 @@ pub struct Field {
     pub usage: Usage,
     /// For an array: the usage of `logical_max`; else the same as `usage`.
     pub last_usage: Usage,
-    /// The value names which of several usages is on, instead of saying how much of one.
+    /// True when the value selects one of several usages; false when it measures one.
     pub is_array: bool,
     /// Usage of the outermost collection, e.g. Game Pad.
     pub application: Usage,
 }
 
 impl Field {
-    /// The value in `report`, which is without its id; `None` when it is too short.
+    /// The value in `report` (without its id); `None` when the report is too short.
     #[must_use]
     pub fn value(&self, report: &[u8]) -> Option<i32> {
         let end = (self.bit_offset + self.bits).div_ceil(8) as usize;
@@ -88,7 +88,7 @@ impl Field {
 /// The input fields of a device, in the order of the descriptor.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Descriptor {
-    /// Every input field that is no padding.
+    /// Every input field except padding.
     pub fields: Vec<Field>,
     /// Reports start with an id.
     pub has_report_ids: bool,
@@ -100,7 +100,7 @@ impl Descriptor {
     /// Reads a report descriptor. At most [`MAX_DESCRIPTOR_BYTES`] bytes and [`MAX_FIELDS`] fields.
     ///
     /// # Errors
-    /// [`DescriptorError`] with the offset of the item that can't be.
+    /// [`DescriptorError`] with the offset of the invalid item.
     pub fn from_bytes(bytes: &[u8]) -> Result<Self, DescriptorError> {
         if bytes.len() > MAX_DESCRIPTOR_BYTES {
             return Err(DescriptorError::TooLong { found: bytes.len() });
@@ -117,13 +117,13 @@ impl Descriptor {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]
 pub enum DescriptorError {
-    /// More bytes than any device has.
+    /// The descriptor is too long.
     #[error("expected at most {MAX_DESCRIPTOR_BYTES} bytes, found {found}")]
     TooLong {
         /// Bytes found.
         found: usize,
     },
-    /// The last item has fewer bytes than its first byte says.
+    /// The last item is shorter than its first byte says.
     #[error("item at byte {offset}: expected {expected} bytes of data, found {found}")]
     Truncated {
         /// Where the item starts.
@@ -133,7 +133,7 @@ pub enum DescriptorError {
         /// Bytes left.
         found: usize,
     },
-    /// A field wider than 32 bits, or with no width.
+    /// A field is wider than 32 bits or has no width.
     #[error("item at byte {offset}: expected a field of 1 to 32 bits, found {found}")]
     FieldWidth {
         /// Where the item starts.
@@ -141,7 +141,7 @@ pub enum DescriptorError {
         /// Width found.
         found: u32,
     },
-    /// A least value above the greatest.
+    /// A minimum is above its maximum.
     #[error("item at byte {offset}: expected a logical range, found {min} to {max}")]
     Range {
         /// Where the item starts.
@@ -151,19 +151,19 @@ pub enum DescriptorError {
         /// Logical maximum.
         max: i32,
     },
-    /// More fields than [`MAX_FIELDS`].
+    /// There are more fields than [`MAX_FIELDS`].
     #[error("item at byte {offset}: expected at most {MAX_FIELDS} fields, found more")]
     TooManyFields {
         /// Where the item starts.
         offset: usize,
     },
-    /// A report longer than [`MAX_REPORT_BITS`].
+    /// A report is longer than [`MAX_REPORT_BITS`].
     #[error("item at byte {offset}: expected a report of at most {MAX_REPORT_BITS} bits, found more")]
     ReportTooLong {
         /// Where the item starts.
         offset: usize,
     },
-    /// Report id 0, or one that does not fit a byte.
+    /// A report id is 0 or does not fit a byte.
     #[error("item at byte {offset}: expected a report id from 1 to 255, found {found}")]
     ReportId {
         /// Where the item starts.
@@ -171,7 +171,7 @@ pub enum DescriptorError {
         /// Id found.
         found: u32,
     },
-    /// Push, pop or collections that do not match, or go too deep.
+    /// Push, pop or collections do not match or are nested too deep.
     #[error("item at byte {offset}: expected matching push and pop and collections, at most 32 deep")]
     Nesting {
         /// Where the item starts.

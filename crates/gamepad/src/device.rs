@@ -1,11 +1,11 @@
-//! What back ends tell about devices, as plain data.
+//! Devices and their events as plain data from back ends.
 
 use std::fmt;
 
 use crate::pads::{Bus, NoGamepad, PadId};
 use crate::{GamepadState, udev};
 
-/// Names one connection of one device, for as long as the program runs.
+/// Identifies one connection of one device while the program runs.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub struct DeviceKey(pub u64);
 
@@ -34,35 +34,35 @@ pub struct DeviceInfo {
     pub key: DeviceKey,
     /// Its name, for people.
     pub name: String,
-    /// Vendor, product, bus; zeros when the back end can't tell.
+    /// Vendor, product, bus; zeros when the back end does not know.
     pub id: PadId,
     /// Serial number or Bluetooth address, where there is one.
     pub serial: Option<String>,
-    /// Where the system has it, e.g. `/dev/hidraw3`.
+    /// Path in the system, e.g. `/dev/hidraw3`.
     pub path: String,
     /// Which library reads it.
     pub source: Source,
 }
 
-/// What happened to a device.
+/// An event of a device.
 #[derive(Clone, Debug, PartialEq)]
 pub enum DeviceEvent {
-    /// It can be read from now on.
+    /// It was connected and can be read.
     Connected {
         /// The device.
         device: DeviceInfo,
         /// Its HID report descriptor; `None` when its events are states.
         descriptor: Option<Vec<u8>>,
     },
-    /// An input report came.
+    /// An input report.
     Report(DeviceKey, Box<[u8]>),
-    /// A feature report came that the start-up asked for.
+    /// A feature report requested at start-up.
     Feature(DeviceKey, Box<[u8]>),
-    /// A raw state came.
+    /// A raw state.
     State(DeviceKey, GamepadState),
-    /// It is gone.
+    /// It was disconnected.
     Disconnected(DeviceKey),
-    /// It is there, but can't be read.
+    /// It is connected but can't be read.
     Unusable {
         /// The device.
         device: DeviceInfo,
@@ -75,10 +75,10 @@ pub enum DeviceEvent {
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]
 pub enum Problem {
-    /// The system does not let this user open it.
+    /// This user may not open it.
     #[error(
-        "{path}: no permission to read and write it. Install the udev rule with these commands, then plug the pad \
-         in again:\n{}", udev::install_commands(*id)
+        "{path}: expected permission to read and write, found none. Install the udev rule with these commands, then \
+         reconnect the pad:\n{}", udev::install_commands(*id)
     )]
     Permission {
         /// The device file.
@@ -87,16 +87,14 @@ pub enum Problem {
         id: PadId,
     },
     /// It can't be opened for another reason.
-    #[error(
-        "{path}: cannot be opened: {message}. Close other programs that may hold it, or plug the pad in again"
-    )]
+    #[error("{path}: cannot be opened: {message}. Close other programs that use it, or reconnect the pad")]
     Open {
         /// The device file or the system's name for the device.
         path: String,
-        /// What the system says.
+        /// Message of the system.
         message: String,
     },
-    /// It is no pad, or one that can't be understood.
+    /// It is not a pad, or its descriptor is not understood.
     #[error("{0}. Record it with `pad record` and report it, or use it through gilrs")]
     NoGamepad(NoGamepad),
 }

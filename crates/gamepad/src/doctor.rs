@@ -1,4 +1,4 @@
-//! What `pad doctor` says: what is connected, through which back end, live values, what is wrong and what to do.
+//! Report of `pad doctor`: connected pads, back ends, live values, problems and their remedies.
 //!
 //! Pure text from [`Gamepads`] and [`SystemFacts`]; the program prints it.
 
@@ -12,11 +12,11 @@ use crate::device::Problem;
 use crate::pads::Model;
 use crate::{Button, GamepadState, Gamepads, Pad, PadReport, Power, udev};
 
-/// The whole report as text, and whether there is a usable pad and nothing wrong.
+/// The whole report as text, and true when there is a usable pad and no problem.
 #[must_use]
 pub fn report(gamepads: &Gamepads, facts: &SystemFacts) -> (String, bool) {
     let mut text = String::new();
-    // Writing to a string does not fail, here and below.
+    // Writing to a string can't fail, here and below.
     let _ = writeln!(text, "Back ends: {}", facts.backends());
     let mut usable = 0;
     for pad in gamepads.pads() {
@@ -27,13 +27,13 @@ pub fn report(gamepads: &Gamepads, facts: &SystemFacts) -> (String, bool) {
         let device = &pad.device;
         let _ = writeln!(
             text,
-            "Left out: {} at {} through {}: the same pad is connected another way.",
+            "Ignored: {} at {} through {}: the same pad is connected in another way.",
             device.name, device.path, device.source
         );
     }
     let advice = advice(gamepads, facts, usable);
     if advice.is_empty() {
-        text.push_str("Nothing is wrong.\n");
+        text.push_str("No problem found.\n");
     }
     for (number, line) in (1..).zip(&advice) {
         let _ = writeln!(text, "Problem {number}: {line}");
@@ -59,7 +59,7 @@ fn pad_text(text: &mut String, number: usize, pad: &Pad, report: &PadReport, now
         let [ax, ay, az] = motion.acceleration;
         let _ = writeln!(
             text,
-            "  motion   turning {gx:+.2} {gy:+.2} {gz:+.2} rad/s, accelerating {ax:+.2} {ay:+.2} {az:+.2} m/s^2"
+            "  motion   rotation {gx:+.2} {gy:+.2} {gz:+.2} rad/s, acceleration {ax:+.2} {ay:+.2} {az:+.2} m/s^2"
         );
     }
     if let Some(battery) = input.battery {
@@ -68,7 +68,7 @@ fn pad_text(text: &mut String, number: usize, pad: &Pad, report: &PadReport, now
             Power::Discharging => "on battery",
             Power::Charging => "charging",
             Power::Full => "full",
-            Power::Unknown => "reports a fault",
+            Power::Unknown => "fault",
         };
         let _ = writeln!(text, "  battery  {percent}, {power}");
     }
@@ -85,7 +85,7 @@ fn presence(pad: &Pad, now_secs: f64) -> &'static str {
     match (accepted, pad.session.is_present_at(now_secs)) {
         (0, _) => ", none yet: press a button",
         (_, true) => "",
-        (_, false) => ", silent: counts as neutral",
+        (_, false) => ", silent: read as neutral",
     }
 }
 
@@ -108,7 +108,7 @@ pub fn values(state: &GamepadState) -> String {
     text
 }
 
-/// One text for each thing that is wrong.
+/// One text for each problem.
 fn advice(gamepads: &Gamepads, facts: &SystemFacts, usable: usize) -> Vec<String> {
     let mut advice: Vec<String> = facts.backend_errors.clone();
     for (device, problem) in gamepads.problems() {
@@ -137,13 +137,14 @@ fn pad_advice(pad: &Pad) -> Option<String> {
     let name = &pad.device.name;
     if let (true, Some(error)) = (refused > accepted, pad.last_error()) {
         return Some(format!(
-            "{name}: most reports are refused, the last one because: {error}. If this is a copy of a known pad, \
-             switch it to another mode, or record it with `pad record` and report it"
+            "{name}: most reports are refused; the last error is: {error}. If this is a copy of a known pad, switch it \
+             to another mode, or record it with `pad record` and report it"
         ));
     }
     match pad.session.calibration_outcome() {
         Some(Err(error)) => Some(format!(
-            "{name}: it could not be calibrated ({error}). Put the pad down, let go of everything, and start again"
+            "{name}: rest positions could not be measured ({error}). Put the pad down, release all controls, and start \
+             again"
         )),
         _ => None,
     }
@@ -153,12 +154,12 @@ fn unreached(event: &EventPad, facts: &SystemFacts) -> String {
     let what = format!("{} ({:04x}:{:04x}, {})", event.name, event.vendor, event.product, event.handler);
     if facts.has_gilrs {
         format!(
-            "{what}: the system has it but neither back end reads it. Check that you may read /dev/input/{}",
+            "{what}: the system has this pad, but neither back end reads it. Check that you may read /dev/input/{}",
             event.handler
         )
     } else {
         format!(
-            "{what}: it is no HID device (an Xbox pad on USB, for example). Install libudev-dev and pkg-config and \
+            "{what}: not an HID device (an Xbox pad on USB, for example). Install libudev-dev and pkg-config, and \
              build with `--features gilrs`"
         )
     }
@@ -166,22 +167,22 @@ fn unreached(event: &EventPad, facts: &SystemFacts) -> String {
 
 fn nothing_found(facts: &SystemFacts) -> String {
     if !facts.is_linux {
-        return "no pad found. Plug one in or pair it, and press a button on it".into();
+        return "no pad found. Connect or pair one, and press a button on it".into();
     }
     if facts.hidraw_nodes == 0 {
-        return "no pad found: this system has no HID device at all (no /dev/hidraw*). In a container or virtual \
-                machine, hand the device through; else plug a pad in or pair it"
+        return "no pad found: this system has no HID device (no /dev/hidraw*). Connect or pair a pad. In a container \
+                or virtual machine, pass the device through"
             .into();
     }
     format!(
-        "no pad found among {} HID devices. Plug one in or pair it, and press a button on it. If it stays away, \
-         install the udev rules (`pad udev | sudo tee {}`) and plug it in again",
+        "no pad found among {} HID devices. Connect or pair one, and press a button on it. If it is still not found, \
+         install the udev rules (`pad udev | sudo tee {}`) and reconnect it",
         facts.hidraw_nodes,
         udev::RULES_PATH
     )
 }
 
-/// True for the problem that a udev rule solves.
+/// True for a problem that a udev rule solves.
 #[must_use]
 pub fn needs_rules(problem: &Problem) -> bool {
     matches!(problem, Problem::Permission { .. })

@@ -1,7 +1,7 @@
-//! All connected pads: hot-plug, no pad twice, one of them active.
+//! All connected pads: hot-plug, each pad once, one of them active.
 //!
-//! Owns the back ends and one [`PadSession`] for each device. Everything but [`Gamepads::poll`] is pure, so tests
-//! apply events by hand.
+//! Owns the back ends and one [`PadSession`] for each device. Everything except [`Gamepads::poll`] is pure, so that
+//! tests can apply events.
 
 mod pad;
 
@@ -29,7 +29,7 @@ pub struct Gamepads {
 }
 
 impl Gamepads {
-    /// No pads and these back ends.
+    /// These back ends, without pads yet.
     #[must_use]
     pub fn new(backends: Vec<Box<dyn PadBackend>>) -> Self {
         Self {
@@ -43,7 +43,7 @@ impl Gamepads {
         }
     }
 
-    /// Every back end that this build has and that starts, and why the others did not.
+    /// Every back end of this build that starts, and the errors of the others.
     #[must_use]
     pub fn with_all_backends() -> (Self, Vec<BackendError>) {
         #[allow(unused_mut, reason = "a build without back ends")]
@@ -61,7 +61,7 @@ impl Gamepads {
         (Self::new(backends), errors)
     }
 
-    /// Takes in everything that happened since the last call; once per control tick is enough. Never waits.
+    /// Processes all events since the last call. Call it once per control tick. Never waits.
     pub fn poll(&mut self) {
         let mut events = std::mem::take(&mut self.events);
         for backend in &mut self.backends {
@@ -74,7 +74,7 @@ impl Gamepads {
         self.now_secs = self.now_secs.max(self.start.elapsed().as_secs_f64());
     }
 
-    /// Takes in one event that came `time_secs` after the start.
+    /// Processes one event that occurred `time_secs` after the start.
     pub fn apply(&mut self, time_secs: f64, event: DeviceEvent) {
         self.now_secs = self.now_secs.max(time_secs);
         let now_secs = self.now_secs;
@@ -102,7 +102,7 @@ impl Gamepads {
         }
     }
 
-    /// Runs `act` on a pad; a pad whose controls left neutral becomes the active one.
+    /// Runs `act` on a pad. A pad whose controls leave neutral becomes the active one.
     fn with_pad(&mut self, key: DeviceKey, act: impl FnOnce(&mut Pad)) {
         let now_secs = self.now_secs;
         let Some(index) = self.pads.iter().position(|pad| pad.device.key == key) else { return };
@@ -119,25 +119,25 @@ impl Gamepads {
         self.pads.iter().enumerate().filter(|(index, _)| self.is_shown(*index)).map(|(_, pad)| pad)
     }
 
-    /// Devices that are left out because the same pad is connected another way.
+    /// Devices that are ignored because the same pad is connected in another way.
     pub fn duplicates(&self) -> impl Iterator<Item = &Pad> {
         self.pads.iter().enumerate().filter(|(index, _)| !self.is_shown(*index)).map(|(_, pad)| pad)
     }
 
-    /// Devices that look like pads but can't be read, and why.
+    /// Devices that look like pads but can't be read, with the reason.
     #[must_use]
     pub fn problems(&self) -> &[(DeviceInfo, Problem)] {
         &self.problems
     }
 
-    /// The pad that was used last; the first one if none was.
+    /// The pad that was used last; the first one if none was used.
     #[must_use]
     pub fn active(&self) -> Option<&Pad> {
         let used = self.pads().find(|pad| Some(pad.device.key) == self.active);
         used.or_else(|| self.pads().next())
     }
 
-    /// What a game reads: the active pad's report, neutral without one.
+    /// Report of the active pad, neutral without a pad. This is what a game reads.
     #[must_use]
     pub fn report(&self) -> PadReport {
         self.active().map(|pad| self.report_of(pad)).unwrap_or_default()
@@ -160,7 +160,7 @@ impl Gamepads {
         self.pads.iter_mut().find(|pad| pad.device.key == key)
     }
 
-    /// Makes a pad rumble and light up; false when it can't.
+    /// Sets rumble and light of a pad. Returns false when it supports neither.
     pub fn set_output(&mut self, key: DeviceKey, output: &PadOutput) -> bool {
         let Some(pad) = self.pads.iter_mut().find(|pad| pad.device.key == key) else { return false };
         let mut report = [0; MAX_OUTPUT_LEN];
@@ -168,17 +168,17 @@ impl Gamepads {
         self.backends.iter_mut().any(|backend| backend.send(key, &report[..len]))
     }
 
-    /// Records a pad from now on, into `out`; replaces a running recording.
+    /// Starts to record a pad into `out`. Replaces a running recording.
     ///
     /// # Errors
-    /// [`RecordingError::Io`] when `out` fails at once.
+    /// [`RecordingError::Io`] when the header can't be written.
     pub fn record(&mut self, key: DeviceKey, out: Box<dyn Write + Send>) -> Result<bool, RecordingError> {
         let now_secs = self.now_secs;
         self.pad_mut(key).map_or(Ok(false), |pad| pad.record(out, now_secs).map(|()| true))
     }
 
-    /// False for a device that is a worse way to a pad that is also connected another way: the same serial number
-    /// (a cable goes before Bluetooth), or gilrs where HID has the same kind of pad.
+    /// False for a duplicate: a device with the serial number of another (a cable is preferred to Bluetooth), or a
+    /// gilrs device where HID has the same kind of pad.
     fn is_shown(&self, index: usize) -> bool {
         let rank =
             |pad: &Pad| (pad.device.source == Source::Gilrs, pad.device.id.bus != Bus::Usb, pad.device.key);
@@ -199,7 +199,7 @@ fn is_same_pad(a: &DeviceInfo, b: &DeviceInfo) -> bool {
     }
 }
 
-/// A serial number without punctuation and case: Bluetooth addresses are written in many ways.
+/// A serial number without punctuation and case: spellings of Bluetooth addresses differ.
 fn letters(serial: &str) -> impl Iterator<Item = char> {
     serial.chars().filter(char::is_ascii_alphanumeric).map(|c| c.to_ascii_lowercase())
 }

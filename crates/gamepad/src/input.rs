@@ -1,4 +1,4 @@
-//! What a pad says, in plain data: controls before dead zones, motion, battery, touch.
+//! Input of a pad as plain data: controls before dead zones, motion, battery, touch.
 
 use crate::GamepadState;
 
@@ -38,11 +38,11 @@ pub struct Motion {
 pub struct Battery {
     /// Charge in percent, [0, 100]; coarse on most pads. `None` when the pad reports a fault.
     pub percent: Option<u8>,
-    /// What the battery does.
+    /// Whether it charges or discharges.
     pub power: Power,
 }
 
-/// What a battery does.
+/// Whether a battery charges or discharges.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Power {
     /// Runs on battery.
@@ -58,30 +58,30 @@ pub enum Power {
 /// A finger on the touch pad.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Touch {
-    /// Number of the contact; a new one each time a finger comes down.
+    /// Number of the contact; a new one for each touch.
     pub id: u8,
     /// x to the right, y away from the player, each in [0, 1].
     pub position: [f32; 2],
 }
 
-/// What one report brought.
+/// What one report changed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Update {
     /// Sticks, triggers and buttons.
     Controls,
-    /// Something else of the input (a battery, the guide button, a calibration).
+    /// Another part of the input: battery, guide button, calibration.
     Other,
-    /// Nothing for a game to see.
+    /// Nothing.
     Nothing,
-    /// A wireless receiver says that its pad is off.
+    /// A wireless receiver reports that its pad is off.
     Absent,
 }
 
-/// Why a report was refused. The input is as before.
+/// Why a report was refused. The input is unchanged.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]
 pub enum ReportError {
-    /// No byte at all.
+    /// The report is empty.
     #[error("expected a report, found no byte")]
     Empty,
     /// Fewer bytes than the report's layout has.
@@ -94,7 +94,7 @@ pub enum ReportError {
         /// Bytes in the report.
         found: usize,
     },
-    /// The CRC32 at the end does not fit the bytes before it.
+    /// The CRC32 at the end does not match the bytes before it.
     #[error("report {report_id:#04x}: expected checksum {expected:#010x}, found {found:#010x}")]
     Checksum {
         /// First byte of the report.

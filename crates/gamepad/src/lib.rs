@@ -1,4 +1,4 @@
-//! Gamepads as plain [`GamepadState`]s: from devices, from recordings and from written scripts.
+//! Gamepads as plain [`GamepadState`]s: from devices, recordings and scripts.
 //!
 //! ```
 //! let script = gamepad::Script::from_ron(
@@ -17,6 +17,7 @@ pub mod calibration;
 pub mod descriptor;
 pub mod device;
 pub mod doctor;
+mod files;
 mod gamepads;
 mod input;
 pub mod pads;

@@ -123,7 +123,7 @@ impl Parser {
     /// The parser for a pad: by its model if known, else by its report descriptor.
     ///
     /// # Errors
-    /// [`NoGamepad`] when the pad is not known and its descriptor is broken or describes no gamepad.
+    /// [`NoGamepad`] when the pad is unknown and its descriptor is invalid or describes no gamepad.
     pub fn new(id: PadId, descriptor: &[u8]) -> Result<Self, NoGamepad> {
         match Model::of(id) {
             Some(model) => Ok(Self::of_model(model, id.bus)),
@@ -149,7 +149,7 @@ impl Parser {
     /// Reads one input report, its id first where the pad uses ids. Does not allocate.
     ///
     /// # Errors
-    /// [`ReportError`] for short, unknown and corrupted reports; `input` is as before.
+    /// [`ReportError`] for short, unknown and corrupted reports; `input` is unchanged.
     pub fn parse_into(&mut self, report: &[u8], input: &mut PadInput) -> Result<Update, ReportError> {
         match self {
             Self::DualShock4(pad) => pad.parse_into(report, input),
@@ -161,7 +161,7 @@ impl Parser {
         }
     }
 
-    /// Takes a feature report that [`Request::Feature`] asked for. Others are ignored.
+    /// Processes a feature report requested by [`Request::Feature`]. Ignores other reports.
     pub fn accept_feature(&mut self, report: &[u8]) {
         match self {
             Self::DualShock4(pad) => pad.accept_feature(report),

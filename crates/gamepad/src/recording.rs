@@ -1,6 +1,6 @@
-//! Recordings of one pad: its raw reports with their times, to a file and back.
+//! Recordings of one pad: its raw reports with their times.
 //!
-//! A recording holds what came in, not what was made of it, so a better parser makes a better replay.
+//! A recording holds raw reports, not states, so a better parser gives a better replay.
 //! The format is specified in `docs/pad-recording.md`.
 
 mod error;
@@ -8,7 +8,6 @@ mod plain;
 mod player;
 mod recorder;
 
-use std::fs::File;
 use std::io::Read;
 use std::path::Path;
 
@@ -18,9 +17,10 @@ pub use recorder::Recorder;
 
 use crate::GamepadState;
 use crate::calibration::Calibration;
+use crate::files::open_regular;
 use crate::pads::{Bus, PadId};
 
-/// Largest recording accepted, in bytes: many hours.
+/// Largest recording accepted, in bytes: many hours of input.
 pub const MAX_RECORDING_BYTES: usize = 64 << 20;
 /// Longest report in a recording, in bytes.
 pub const MAX_RECORDED_REPORT: usize = 4096;
@@ -40,18 +40,18 @@ pub struct RecordedPad {
     pub id: PadId,
     /// Its name, for people; at most 256 bytes are kept.
     pub name: String,
-    /// Its HID report descriptor; empty for known pads is fine. `None`: not read through HID, its events are states.
+    /// Its HID report descriptor; may be empty for known pads. `None`: not read through HID, its events are states.
     pub descriptor: Option<Vec<u8>>,
 }
 
-/// One thing that happened to the pad.
+/// One event of the pad.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum PadEvent<'a> {
-    /// An input report came.
+    /// An input report.
     Report(&'a [u8]),
-    /// A feature report came that the start-up asked for.
+    /// A feature report requested at start-up.
     Feature(&'a [u8]),
-    /// A raw state came, from a pad that is not read through HID.
+    /// A raw state, from a pad that is not read through HID.
     State(GamepadState),
     /// The pad was pulled out.
     Disconnected,
@@ -86,10 +86,10 @@ impl Kind {
 }
 
 impl Recording {
-    /// Reads a recording and checks all of it.
+    /// Reads and checks a whole recording.
     ///
     /// # Errors
-    /// [`RecordingError`] with the offset of what is wrong.
+    /// [`RecordingError`] with the offset of the error.
     pub fn from_bytes(bytes: Vec<u8>) -> Result<Self, RecordingError> {
         if bytes.len() > MAX_RECORDING_BYTES {
             return Err(RecordingError::TooLong { found: bytes.len() });
@@ -112,11 +112,11 @@ impl Recording {
     /// Reads a recording from a file.
     ///
     /// # Errors
-    /// [`RecordingError::InFile`] naming the file, around what is wrong with it.
+    /// [`RecordingError::InFile`] with the file and the error.
     pub fn load(path: &Path) -> Result<Self, RecordingError> {
         let in_file = |cause| RecordingError::InFile { file: path.to_owned(), cause: Box::new(cause) };
         let mut bytes = Vec::new();
-        File::open(path)
+        open_regular(path)
             .and_then(|file| file.take(MAX_RECORDING_BYTES as u64 + 1).read_to_end(&mut bytes))
             .map_err(|error| in_file(error.into()))?;
         Self::from_bytes(bytes).map_err(in_file)
@@ -134,7 +134,7 @@ impl Recording {
         self.events.len()
     }
 
-    /// True when nothing happened.
+    /// True without any event.
     #[must_use]
     pub fn is_empty(&self) -> bool {
         self.events.is_empty()
@@ -170,7 +170,7 @@ fn u16_of(bytes: &[u8]) -> u16 {
     u16::from_le_bytes([bytes[0], bytes[1]])
 }
 
-/// `len` bytes from `at`, or where they are missing.
+/// `len` bytes from `at`, or an error with the offset.
 fn slice(bytes: &[u8], at: usize, len: usize) -> Result<&[u8], RecordingError> {
     bytes.get(at..at + len).ok_or(RecordingError::Truncated {
         offset: at,

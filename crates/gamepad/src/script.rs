@@ -1,9 +1,8 @@
 //! Scripts of pad input: sticks, triggers and buttons over time, written by hand in RON.
 //!
-//! Owns the meaning of a script in time. Reading the text is `parse`, the errors are `error`.
+//! Owns the meaning of a script over time. `parse` reads the text, `error` has the errors.
 //! The format is described in `assets/scripts/README.md`.
 
-mod button_name;
 mod error;
 mod parse;
 mod track;
@@ -22,7 +21,7 @@ pub const MAX_SCRIPT_BYTES: usize = 1 << 20;
 pub const MAX_SCRIPT_ENTRIES: usize = 10_000;
 /// Latest time a script may name, in seconds (one day).
 pub const MAX_SCRIPT_SECS: f64 = 86_400.0;
-/// How long a tapped button is held, in seconds: several control ticks, so that none misses it.
+/// How long a tapped button is held, in seconds: several control ticks, so that no tap is missed.
 pub const TAP_SECS: f64 = 0.15;
 
 /// A pad's input over time: analog values in straight lines between key frames, buttons by edges.
@@ -42,8 +41,8 @@ impl Script {
     /// Reads a script from RON text.
     ///
     /// # Errors
-    /// [`ScriptError`] with line and column for text that is no RON, unknown fields or buttons, times that
-    /// are not ascending, negative or not finite, values out of range, and texts or counts over the limits.
+    /// [`ScriptError`] with line and column for invalid RON, unknown fields or buttons, times that are not
+    /// ascending, negative or not finite, values out of range, and texts or counts over the limits.
     pub fn from_ron(text: &str) -> Result<Self, ScriptError> {
         parse::parse(text).map(|file| Self::from_file(&file))
     }
@@ -51,15 +50,15 @@ impl Script {
     /// Reads a script from a RON file.
     ///
     /// # Errors
-    /// [`ScriptError::InFile`] naming the file, around what is wrong with it.
+    /// [`ScriptError::InFile`] with the file and the error.
     pub fn load(path: &Path) -> Result<Self, ScriptError> {
         let in_file = |cause| ScriptError::InFile { file: path.to_owned(), cause: Box::new(cause) };
         let text = parse::read_limited(path).map_err(in_file)?;
         Self::from_ron(&text).map_err(in_file)
     }
 
-    /// The pad's state at `time_secs` after the start. The first state holds before zero (and for NaN),
-    /// the last one after the end. Does not allocate.
+    /// The pad's state at `time_secs` after the start. The first state applies before zero (and for NaN), the last
+    /// one after the end. Does not allocate.
     #[must_use]
     pub fn state_at(&self, time_secs: f64) -> GamepadState {
         let time_secs = time_secs.max(0.0);
@@ -73,7 +72,7 @@ impl Script {
         }
     }
 
-    /// Length in seconds: the `duration` written in the script, or the end of its last ramp or tap.
+    /// Length in seconds: the `duration` of the script, or the end of its last ramp or tap.
     #[must_use]
     pub fn duration(&self) -> f64 {
         self.duration_secs
@@ -113,14 +112,14 @@ impl Script {
             }
         }
         for &name in &entry.press.0 {
-            self.buttons.push(at, name.button(), true);
+            self.buttons.push(at, name, true);
         }
         for &name in &entry.release.0 {
-            self.buttons.push(at, name.button(), false);
+            self.buttons.push(at, name, false);
         }
         for &name in &entry.tap.0 {
-            self.buttons.push(at, name.button(), true);
-            self.buttons.push(at + TAP_SECS, name.button(), false);
+            self.buttons.push(at, name, true);
+            self.buttons.push(at + TAP_SECS, name, false);
         }
     }
 }

@@ -1,4 +1,4 @@
-//! One pad over time: its parser, its calibration, and what it counts as while it is silent or gone.
+//! One pad over time: its parser, its calibration, and its state while it is silent or disconnected.
 //!
 //! Pure: reports and times in, [`PadReport`] out; the same reports at the same times give the same states.
 
@@ -6,17 +6,18 @@ use crate::calibration::{Calibration, DeadZones, NotAtRest, RestCalibrator};
 use crate::pads::{PadId, Parser};
 use crate::{GamepadState, NoGamepad, PadInput, PadReport, ReportError, Update};
 
-/// How long a pad that reports all the time may be silent before it counts as gone, in seconds. Pads do so whose
-/// reports have motion sensors, and those that are seen to; the others may only report changes.
+/// How long a pad that reports continuously may be silent before it counts as disconnected, in seconds. Pads whose
+/// reports include motion sensors report continuously, and so do those that are observed to. Others may report
+/// changes only.
 pub const SILENCE_SECS: f64 = 0.25;
-/// How long a pad is watched after connecting to find where it rests, in seconds.
+/// How long rest positions are measured after connecting, in seconds.
 pub const CALIBRATION_SECS: f64 = 0.5;
-/// So many reports in a row, no further apart than [`STREAM_GAP_SECS`] and none bringing a change, show that a pad
-/// reports all the time.
+/// This many reports in a row without a change, at most [`STREAM_GAP_SECS`] apart, show that a pad reports
+/// continuously.
 const STREAM_REPORTS: u32 = 50;
 const STREAM_GAP_SECS: f64 = 0.05;
 
-/// Where a session's raw states come from.
+/// Source of a session's raw states.
 #[derive(Clone, Debug)]
 enum Source {
     Reports(Parser),
@@ -32,14 +33,14 @@ pub struct PadSession {
     input: PadInput,
     present: bool,
     last_secs: f64,
-    /// As asked for; those of the calibration may be wider.
+    /// As requested; those of the calibration may be wider.
     zones: DeadZones,
     calibration: Calibration,
     measuring: Option<(f64, RestCalibrator)>,
     outcome: Option<Result<(), NotAtRest>>,
-    /// The last measurement that counted, to apply other dead zones to it.
+    /// The last accepted measurement, to apply other dead zones to it.
     measured: Option<RestCalibrator>,
-    /// The calibration was measured or set: connecting again measures no more.
+    /// The calibration was measured or set: connecting again does not measure.
     calibrated: bool,
     refused: u64,
     accepted: u64,
@@ -49,7 +50,7 @@ impl PadSession {
     /// A session for a pad that sends HID reports, from its ids and report descriptor.
     ///
     /// # Errors
-    /// [`NoGamepad`] when the pad is not known and its descriptor describes none.
+    /// [`NoGamepad`] when the pad is unknown and its descriptor describes no gamepad.
     pub fn new(id: PadId, descriptor: &[u8]) -> Result<Self, NoGamepad> {
         Ok(Self::with_source(Source::Reports(Parser::new(id, descriptor)?)))
     }
@@ -79,10 +80,10 @@ impl PadSession {
         }
     }
 
-    /// Takes one input report that came at `time_secs`. Does not allocate.
+    /// Processes one input report that arrived at `time_secs`. Does not allocate.
     ///
     /// # Errors
-    /// [`ReportError`] for a report that is refused; the state is as before.
+    /// [`ReportError`] for a report that is refused; the state is unchanged.
     pub fn accept(&mut self, report: &[u8], time_secs: f64) -> Result<Update, ReportError> {
         let Source::Reports(parser) = &mut self.source else {
             return Ok(Update::Nothing);
@@ -104,27 +105,27 @@ impl PadSession {
         }
     }
 
-    /// Takes one raw state that came at `time_secs`.
+    /// Processes one raw state that arrived at `time_secs`.
     pub fn accept_state(&mut self, raw: GamepadState, time_secs: f64) {
         let before = std::mem::replace(&mut self.input.raw, raw);
         self.observe(before, Update::Controls, time_secs);
     }
 
-    /// Takes a feature report that the start-up asked for.
+    /// Processes a feature report requested at start-up.
     pub fn accept_feature(&mut self, report: &[u8]) {
         if let Source::Reports(parser) = &mut self.source {
             parser.accept_feature(report);
         }
     }
 
-    /// The pad was pulled out: neutral at once, until the next report.
+    /// Marks the pad as disconnected: neutral at once, until the next report.
     pub fn disconnect(&mut self) {
         self.input = PadInput::default();
         self.present = false;
         self.measuring = None;
     }
 
-    /// The pad at `time_secs`: neutral while it is gone or silent.
+    /// Report of the pad at `time_secs`: neutral while it is disconnected or silent.
     #[must_use]
     pub fn report_at(&self, time_secs: f64) -> PadReport {
         if !self.is_present_at(time_secs) {
@@ -133,7 +134,7 @@ impl PadSession {
         PadReport { state: self.calibration.state(&self.input.raw), input: self.input }
     }
 
-    /// True unless the pad is gone, or silent although it used to report all the time.
+    /// True unless the pad is disconnected, or silent although it reported continuously.
     #[must_use]
     pub fn is_present_at(&self, time_secs: f64) -> bool {
         let streams = self.seen_to_stream || self.input.motion.is_some();
@@ -141,7 +142,7 @@ impl PadSession {
         self.present && !silent
     }
 
-    /// Starts to measure where the pad rests, as after connecting; takes [`CALIBRATION_SECS`].
+    /// Starts to measure rest positions, as after connecting; takes [`CALIBRATION_SECS`].
     pub fn calibrate(&mut self, time_secs: f64) {
         self.measuring = Some((time_secs, RestCalibrator::default()));
     }
@@ -152,8 +153,8 @@ impl PadSession {
         &self.calibration
     }
 
-    /// Sets the dead zones and keeps the rest positions. Where a control moves at rest more than its zone forgives,
-    /// the zone in use stays wider.
+    /// Sets the dead zones and keeps the rest positions. The zone in use stays wider where a control moves more at rest
+    /// than its zone allows.
     pub fn set_dead_zones(&mut self, zones: DeadZones) {
         self.zones = zones;
         let measured = self.measured.as_ref().and_then(|measured| measured.finish(zones).ok());
@@ -169,13 +170,13 @@ impl PadSession {
         self.measuring = None;
     }
 
-    /// How the last measurement ended; `None` before the first one has.
+    /// Result of the last measurement; `None` before the first one ends.
     #[must_use]
     pub fn calibration_outcome(&self) -> Option<Result<(), NotAtRest>> {
         self.outcome
     }
 
-    /// Number of reports taken and refused.
+    /// Number of reports accepted and refused.
     #[must_use]
     pub fn counts(&self) -> (u64, u64) {
         (self.accepted, self.refused)

@@ -1,12 +1,12 @@
-//! The udev rules that let a person at the machine read pads on Linux, as text ready to install.
+//! The udev rules that let a local user read pads on Linux, as text to install.
 //!
-//! `TAG+="uaccess"` gives the device to whoever sits at the machine; the file must sort before `73-seat-late.rules`.
+//! `TAG+="uaccess"` gives the local user access to the device; the file must sort before `73-seat-late.rules`.
 
 use std::fmt::Write as _;
 
 use crate::pads::{KNOWN, PadId};
 
-/// Where the rules go.
+/// File that the rules are installed to.
 pub const RULES_PATH: &str = "/etc/udev/rules.d/70-policy-space-pads.rules";
 
 /// The rules for one kind of pad, over USB and over Bluetooth.
@@ -32,7 +32,7 @@ pub fn rules() -> String {
     text
 }
 
-/// Shell commands that install the rules for one kind of pad and make them count at once.
+/// Shell commands that install the rules for one kind of pad and reload them.
 #[must_use]
 pub fn install_commands(id: PadId) -> String {
     format!(

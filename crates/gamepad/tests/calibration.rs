@@ -63,7 +63,7 @@ fn nothing_moves_at_rest_with_a_drifting_stick_after_calibration() {
     for step in 0..1000 {
         assert_eq!(calibration.state(&trembling(step)), GamepadState::default());
     }
-    // And the ends of the ways are still reached.
+    // The full range is still reached.
     for sign in [-1.0, 1.0] {
         assert_eq!(calibration.state(&held([sign, -0.12], 0.0)).left_stick[0], sign);
     }
@@ -155,7 +155,7 @@ fn a_pad_that_reports_changes_only_may_be_silent() {
     (held[0], held[2], held[4], held[6], held[8]) = (1, 0xff, 0x80, 0x80, 0x80);
     assert_eq!(session.accept(&held, 1.0), Ok(Update::Controls));
     assert!(session.report_at(60.0).state.left_stick[0] > 0.9);
-    // Unless it turns out to report all the time.
+    // Unless it is observed to report continuously.
     for step in 0..60 {
         session.accept(&held, 61.0 + f64::from(step) * 0.01).unwrap();
     }
@@ -168,7 +168,7 @@ fn simple_reports_come_on_change_only() {
     let mut session = PadSession::new(switch, &[]).unwrap();
     session.accept(&[0x3f, 1, 0, 8, 0, 0x80, 0, 0x80, 0, 0x80, 0, 0x80], 1.0).unwrap();
     assert!(session.report_at(60.0).state.buttons.contains(Button::South));
-    // Its full reports come all the time.
+    // It sends full reports continuously.
     let mut full = [0; 49];
     (full[0], full[3]) = (0x30, 0x04);
     session.accept(&full, 61.0).unwrap();
@@ -188,7 +188,7 @@ fn a_session_calibrates_itself_after_connecting() {
     near(session.report_at(1.2).input.raw.left_stick[0], 24.0 / 127.0, 1e-6);
     session.accept(&report(255, 128, false), 1.2).unwrap();
     assert_eq!(session.report_at(1.2).state.left_stick, [1.0, 0.0]);
-    // While somebody holds the stick there is nothing to measure.
+    // A held stick can't be measured.
     let mut held = PadSession::new(DUALSENSE, &[]).unwrap();
     for step in 0..300 {
         held.accept(&report(255, 128, false), f64::from(step) * 0.004).unwrap();

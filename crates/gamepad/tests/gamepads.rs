@@ -209,7 +209,7 @@ fn the_doctor_shows_a_pad_with_its_values() {
         "battery  5 %, on battery",
         "1 read, 0 refused",
         "output   rumble, light bar",
-        "Nothing is wrong.",
+        "No problem found.",
     ] {
         assert!(text.contains(part), "{text}\nlacks {part:?}");
     }
@@ -217,7 +217,7 @@ fn the_doctor_shows_a_pad_with_its_values() {
 }
 
 #[test]
-fn the_doctor_says_what_is_wrong_and_what_to_do() {
+fn the_doctor_lists_problems_and_remedies() {
     let mut gamepads = Gamepads::new(Vec::new());
     let said = |gamepads: &Gamepads, facts: &SystemFacts, parts: &[&str]| {
         let (text, sound) = doctor::report(gamepads, facts);
@@ -226,7 +226,7 @@ fn the_doctor_says_what_is_wrong_and_what_to_do() {
             assert!(text.contains(part), "{text}\nlacks {part:?}");
         }
     };
-    said(&gamepads, &SystemFacts { hidraw_nodes: 0, ..linux() }, &["no HID device at all", "container"]);
+    said(&gamepads, &SystemFacts { hidraw_nodes: 0, ..linux() }, &["has no HID device", "container"]);
     said(&gamepads, &linux(), &["no pad found among 3 HID devices", udev::RULES_PATH]);
     let xpad =
         EventPad { name: "Xbox pad".into(), vendor: 0x045e, product: 0x02ea, handler: "event7".into() };
@@ -240,7 +240,7 @@ fn the_doctor_says_what_is_wrong_and_what_to_do() {
         &gamepads,
         &linux(),
         &[
-            "/dev/hidraw4: no permission",
+            "/dev/hidraw4: expected permission",
             "idVendor}==\"054c\"",
             "TAG+=\"uaccess\"",
             "udevadm control --reload",

@@ -19,7 +19,7 @@ fn report(x: u8, south: bool) -> [u8; 64] {
     report
 }
 
-/// One second at rest, one second of a stick going out, a pull of the cable, and back.
+/// One second at rest, one second of stick movement, a disconnect, and a reconnect.
 fn recorded() -> Vec<u8> {
     let mut recorder = Recorder::new(Vec::new(), &pad()).unwrap();
     recorder.record(0.0, PadEvent::Feature(&[0x05; 41])).unwrap();

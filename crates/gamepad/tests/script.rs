@@ -137,6 +137,18 @@ fn a_file_is_named_in_its_errors() {
 }
 
 #[test]
+fn messages_are_short_and_can_not_control_a_terminal() {
+    let field = "\u{1b}[2Jx".repeat(1000);
+    for text in
+        [format!("(entries: [(at: 1, \"{field}\": 2)])"), format!("(entries: [(at: 1, press: [r#{field}])])")]
+    {
+        let message = Script::from_ron(&text).expect_err("an unknown field").to_string();
+        assert!(message.chars().count() < 400, "{}", message.len());
+        assert!(!message.chars().any(char::is_control), "{message:?}");
+    }
+}
+
+#[test]
 fn the_scripts_of_the_assets_are_sound() {
     let mut seen = 0;
     for entry in std::fs::read_dir(scripts_folder()).unwrap() {

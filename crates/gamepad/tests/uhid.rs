@@ -71,7 +71,7 @@ impl Uhid {
         self.send(INPUT2, &body)
     }
 
-    /// Answers everything that the kernel asks.
+    /// Replies to every request of the kernel.
     fn answer(&mut self) -> std::io::Result<()> {
         let mut event = [0; EVENT_LEN];
         loop {
@@ -195,7 +195,7 @@ fn a_virtual_dualsense_end_to_end() {
     assert!(until(&mut uhid, &mut gamepads, Some(&held), |_, uhid| {
         uhid.outputs.iter().any(|report| report.first() == Some(&0x02) && report[4] == 255)
     }));
-    // Silent: neutral. Reporting again: back. Pulled out: neutral and gone.
+    // Silent: neutral. Reporting again: present. Disconnected: neutral and removed.
     assert!(until(&mut uhid, &mut gamepads, None, |gamepads, _| state(gamepads) == PadReport::default()));
     assert!(until(&mut uhid, &mut gamepads, Some(&held), |gamepads, _| state(gamepads).state.left_stick[0]
         == 1.0));

@@ -242,7 +242,7 @@ impl Controller {
         let heights = Heights::of(self.pack.skeleton(), state);
         self.run_skill(state, heights, dt);
         self.detect_fall(heights, dt);
-        self.request_skill(command.skill, heights);
+        self.request_skill(command.skill, state, heights, dt);
         self.travel(state, command, heights, dt);
         self.choose_blend(command);
         self.observe(state, command);
@@ -324,11 +324,12 @@ impl Controller {
     }
 
     fn observe(&mut self, state: &CharacterState, command: &Command) {
+        let target_world = self.target(state, command);
         let skeleton = self.pack.skeleton();
         let (observation, target) = self.input.split_at_mut(skeleton.observation_len());
         observe_into(skeleton, state, observation);
         self.pack.tensors().observation_normaliser.normalise_in_place(observation);
-        self.state.report.target = command.target.map_or([0.0; 2], |target| target_input(state, target));
+        self.state.report.target = target_world.map_or([0.0; 2], |target| target_input(state, target));
         target.copy_from_slice(&self.state.report.target);
     }
 }

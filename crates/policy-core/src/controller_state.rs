@@ -29,6 +29,8 @@ pub struct ControllerState {
     pub(crate) handover_from: Vec<f32>,
     /// Seconds that the hand-over takes yet.
     pub(crate) handover_secs: f32,
+    /// Seconds that the pending skill has waited.
+    pub(crate) pending_secs: f32,
 }
 
 /// Why a state can't be restored. The controller is unchanged.
@@ -75,6 +77,7 @@ impl ControllerState {
             targets: JointTargets::new(skeleton),
             handover_from: alloc::vec![0.0; skeleton.joint_count()],
             handover_secs: 0.0,
+            pending_secs: 0.0,
         }
     }
 
@@ -98,6 +101,7 @@ impl ControllerState {
         self.targets.copy_from_slice(&other.targets);
         self.handover_from.copy_from_slice(&other.handover_from);
         self.handover_secs = other.handover_secs;
+        self.pending_secs = other.pending_secs;
     }
 
     /// Makes it the state of a new controller again.
@@ -110,6 +114,7 @@ impl ControllerState {
         self.targets.fill(0.0);
         self.handover_from.fill(0.0);
         self.handover_secs = 0.0;
+        self.pending_secs = 0.0;
     }
 
     pub(crate) fn same_size(&self, other: &Self) -> bool {
@@ -145,7 +150,7 @@ impl ControllerState {
         let all = skills.iter().chain(&ended).flatten().all(exists);
         field("skill", "skills of the pack", all)?;
         let mut numbers = self.targets.iter().chain(&self.handover_from).chain(self.history.parts().0);
-        let times = [self.fall.low_seconds, self.fall.rising_seconds, self.handover_secs];
+        let times = [self.fall.low_seconds, self.fall.rising_seconds, self.handover_secs, self.pending_secs];
         let finite = numbers.all(|n| n.is_finite()) && times.iter().all(|t| t.is_finite());
         field("numbers", "finite numbers", finite)?;
         let progress = r.skill.map_or([0.0; 2], |s| [s.seconds, s.held_seconds]);

@@ -221,6 +221,9 @@ pub struct SkillEntry {
     /// Names of the policies from which it may start; empty: from any.
     #[serde(default)]
     pub entry: Vec<String>,
+    /// Speed below which it does not start, metres per second.
+    #[serde(default)]
+    pub minimum_speed_mps: f32,
     /// Name of the policy that runs afterwards.
     pub returns_to: String,
     /// Name of the discriminator that ends it; none: the time limit alone does.

@@ -5,6 +5,7 @@ use alloc::vec::Vec;
 
 use serde::Deserialize;
 
+use crate::excerpt::excerpt;
 use crate::format::{
     BodyEntry, DISCRIMINATOR_LAYOUT, DiscriminatorEntry, EdgeEntry, EndEntry, JointEntry, Manifest,
     OBSERVATION_LAYOUT, PACK_VERSION, PathEntry, PolicyEntry, RolesEntry, SkeletonEntry, SkillEntry, Storage,
@@ -90,7 +91,7 @@ impl ManifestOne {
         if let Some((field, expected, found)) =
             fields.into_iter().find(|(_, expected, found)| expected != *found)
         {
-            return Err(PackError::Field { field, expected, found: found.clone() });
+            return Err(PackError::Field { field, expected, found: excerpt(found) });
         }
         let control_hz = self.control_hz;
         Ok(Manifest {
@@ -137,6 +138,7 @@ impl SkillOne {
             name: self.name,
             policy: self.policy,
             entry: self.entry,
+            minimum_speed_mps: 0.0,
             returns_to: self.returns_to,
             discriminator: self.discriminator,
             end,

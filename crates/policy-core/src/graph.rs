@@ -67,7 +67,7 @@ pub enum GraphError {
         found: usize,
     },
     /// Two things of one kind share a name, or the name is empty.
-    #[error("expected a {kind} name that is not empty and unique, found \"{name}\"")]
+    #[error("expected a {kind} name that is not empty and unique, found {name:?}")]
     Name {
         /// `policy`, `path`, ...
         kind: &'static str,
@@ -75,7 +75,7 @@ pub enum GraphError {
         name: String,
     },
     /// A number of a node is not what it must be.
-    #[error("expected {expected} for {field} of policy \"{node}\", found {found}")]
+    #[error("expected {expected} for {field} of policy {node:?}, found {found}")]
     NodeNumber {
         /// Name of the node.
         node: String,
@@ -95,7 +95,7 @@ pub enum GraphError {
         found: Edge,
     },
     /// A path is too short or runs where there is no edge.
-    #[error("expected path \"{path}\" to run along edges from node to node, found {from} then {to:?}")]
+    #[error("expected path {path:?} to run along edges from node to node, found {from} then {to:?}")]
     Path {
         /// Name of the path.
         path: String,

@@ -67,6 +67,7 @@ mod command;
 mod controller;
 mod controller_state;
 mod evaluator;
+mod excerpt;
 mod fall;
 mod features;
 mod fixed_rate;

@@ -9,6 +9,7 @@ use half::f16;
 use safetensors::tensor::{Dtype, SafeTensors, TensorView};
 use serde::Deserialize;
 
+use crate::excerpt::excerpt;
 use crate::format::{Manifest, PACK_VERSION, Storage};
 use crate::format_one::{self, ManifestOne};
 use crate::mlp::{Layer, MAX_LAYERS, Mlp};
@@ -36,14 +37,14 @@ impl CharacterPack {
     /// # Errors
     /// When the bytes are no pack, are damaged, or anything in them is not as it must be; see [`PackError`].
     pub fn from_bytes(bytes: &[u8]) -> Result<Self, PackError> {
-        let container = |e: safetensors::SafeTensorError| PackError::Container { found: e.to_string() };
+        let container = |e: safetensors::SafeTensorError| PackError::Container { found: excerpt(e) };
         let (header_len, metadata) = SafeTensors::read_metadata(bytes).map_err(container)?;
         let json = metadata.metadata().as_ref().and_then(|m| m.get(MANIFEST_KEY));
         let manifest = manifest(json.ok_or(PackError::NoManifest)?)?;
         if let Some(expected) = &manifest.checksum {
             let found = checksum(bytes, header_len);
             if found.as_ref() != Some(expected) {
-                let (expected, found) = (expected.clone(), found.unwrap_or_else(|| "none".into()));
+                let (expected, found) = (excerpt(expected), found.unwrap_or_else(|| "none".into()));
                 return Err(PackError::Checksum { expected, found });
             }
         }
@@ -112,7 +113,7 @@ fn manifest(json: &str) -> Result<Manifest, PackError> {
     struct Versioned {
         version: u32,
     }
-    let wrong = |e: serde_json::Error| PackError::Manifest { found: e.to_string() };
+    let wrong = |e: serde_json::Error| PackError::Manifest { found: excerpt(e) };
     match serde_json::from_str(json).map_err(wrong)? {
         Versioned { version: format_one::VERSION } => {
             serde_json::from_str::<ManifestOne>(json).map_err(wrong)?.upgraded()
@@ -266,6 +267,6 @@ impl Reader<'_> {
 
     fn refuse_unused(&self) -> Result<(), PackError> {
         let extra = self.file.names().into_iter().find(|name| !self.used.iter().any(|u| u == name));
-        extra.map_or(Ok(()), |name| Err(PackError::ExtraTensor { name: name.into() }))
+        extra.map_or(Ok(()), |name| Err(PackError::ExtraTensor { name: excerpt(name) }))
     }
 }

@@ -50,7 +50,7 @@ pub enum PackError {
         found: f32,
     },
     /// A name stands for nothing.
-    #[error("expected the name of a {kind} in {field}, found \"{found}\"")]
+    #[error("expected the name of a {kind} in {field}, found {found:?}")]
     UnknownName {
         /// What it should name.
         kind: &'static str,
@@ -90,7 +90,7 @@ pub enum PackError {
         found: usize,
     },
     /// A skill can't be started from a node of a path.
-    #[error("expected a way from policy \"{from}\" to an entry of skill \"{skill}\", found none")]
+    #[error("expected a way from policy {from:?} to an entry of skill {skill:?}, found none")]
     Unreachable {
         /// Name of the skill.
         skill: String,
@@ -109,19 +109,19 @@ pub enum PackError {
     #[error("skeleton: {0}")]
     Skeleton(#[from] SkeletonError),
     /// A tensor is missing.
-    #[error("expected tensor \"{name}\", found none")]
+    #[error("expected tensor {name:?}, found none")]
     NoTensor {
         /// Its name.
         name: String,
     },
     /// A tensor belongs to nothing in the manifest.
-    #[error("expected only tensors of the manifest, found \"{name}\" as well")]
+    #[error("expected only tensors of the manifest, found {name:?} as well")]
     ExtraTensor {
         /// Its name.
         name: String,
     },
     /// A tensor has another type or shape.
-    #[error("expected tensor \"{name}\" to be {expected}, found {found}")]
+    #[error("expected tensor {name:?} to be {expected}, found {found}")]
     TensorShape {
         /// Its name.
         name: String,
@@ -131,7 +131,7 @@ pub enum PackError {
         found: String,
     },
     /// A network can't be made of its tensors.
-    #[error("network \"{name}\": {source}")]
+    #[error("network {name:?}: {source}")]
     Network {
         /// Name of the network.
         name: String,
@@ -139,7 +139,7 @@ pub enum PackError {
         source: MlpError,
     },
     /// A network has not the widths it must have.
-    #[error("expected network \"{name}\" to have the layers {expected}, found {found:?}")]
+    #[error("expected network {name:?} to have the layers {expected}, found {found:?}")]
     Layers {
         /// Name of the network.
         name: String,

@@ -5,6 +5,7 @@ use alloc::vec::Vec;
 
 use crate::action::ActionScaling;
 use crate::actuation::ActuationContract;
+use crate::excerpt::excerpt;
 use crate::features::FRAME_AGES;
 use crate::format::{
     DISCRIMINATOR_LAYOUT, EdgeEntry, EndEntry, MAX_NAME_BYTES, Manifest, OBSERVATION_LAYOUT, PACK_FORMAT,
@@ -25,7 +26,7 @@ const MAX_SKILLS: usize = 64;
 pub(crate) fn check_manifest(m: &Manifest) -> Result<(), PackError> {
     let field = |field, expected: String, found: String| match expected == found {
         true => Ok(()),
-        false => Err(PackError::Field { field, expected, found }),
+        false => Err(PackError::Field { field, expected, found: excerpt(found) }),
     };
     field("format", PACK_FORMAT.into(), m.format.clone())?;
     field("version", PACK_VERSION.to_string(), m.version.to_string())?;
@@ -44,7 +45,9 @@ pub(crate) fn check_manifest(m: &Manifest) -> Result<(), PackError> {
     let names = m.policies.iter().map(|p| ("policy", &p.name));
     let names = names.chain(m.paths.iter().map(|p| ("path", &p.name)));
     let names = names.chain(m.discriminators.iter().map(|d| ("discriminator", &d.name)));
-    let mut names = names.chain(m.skills.iter().map(|s| ("skill", &s.name)));
+    let names = names.chain(m.skills.iter().map(|s| ("skill", &s.name)));
+    let names = names.chain(m.skeleton.bodies.iter().map(|b| ("body", &b.name)));
+    let mut names = names.chain(m.skeleton.joints.iter().map(|j| ("joint", &j.name)));
     if let Some((kind, name)) = names.find(|(_, name)| name.len() > MAX_NAME_BYTES) {
         return Err(PackError::LongName { kind, most: MAX_NAME_BYTES, found: name.len() });
     }
@@ -159,7 +162,7 @@ pub(crate) fn find(
     name: &str,
     names: &mut dyn Iterator<Item = &str>,
 ) -> Result<usize, PackError> {
-    let unknown = || PackError::UnknownName { kind, field: field.to_string(), found: name.into() };
+    let unknown = || PackError::UnknownName { kind, field: field.to_string(), found: excerpt(name) };
     Iterator::position(&mut &mut *names, |n| n == name).ok_or_else(unknown)
 }
 
@@ -179,6 +182,7 @@ pub(crate) fn skill(entry: &SkillEntry, names: &[&str], m: &Manifest) -> Result<
         name: entry.name.clone(),
         policy: PolicyId::from(find_node(field(), &entry.policy, names)?),
         entry: entry.entry.iter().map(|n| find_node(field(), n, names)).collect::<Result<_, _>>()?,
+        minimum_speed_mps: minimum_speed(entry, field())?,
         returns_to: find_node(field(), &entry.returns_to, names)?,
         discriminator: match &entry.discriminator {
             None => None,
@@ -188,6 +192,16 @@ pub(crate) fn skill(entry: &SkillEntry, names: &[&str], m: &Manifest) -> Result<
         },
         end: end_condition(&entry.end, field())?,
     })
+}
+
+fn minimum_speed(entry: &SkillEntry, owner: String) -> Result<f32, PackError> {
+    let found = entry.minimum_speed_mps;
+    let (field, expected) = ("minimum_speed_mps", "0 to 20");
+    if (0.0..=20.0).contains(&found) {
+        Ok(found)
+    } else {
+        Err(PackError::Number { field, owner, expected, found })
+    }
 }
 
 fn end_condition(end: &EndEntry, owner: String) -> Result<EndCondition, PackError> {

@@ -80,7 +80,7 @@ pub enum SkeletonError {
         found: usize,
     },
     /// Two parts share a name, or a name is empty.
-    #[error("expected a {what} name that is not empty and unique, found \"{name}\"")]
+    #[error("expected a {what} name that is not empty and unique, found {name:?}")]
     Name {
         /// `body` or `joint`.
         what: &'static str,
@@ -88,7 +88,7 @@ pub enum SkeletonError {
         name: String,
     },
     /// A body has no parent, or one that comes after it.
-    #[error("expected the parent of body \"{body}\" among the bodies before it, found {found:?}")]
+    #[error("expected the parent of body {body:?} among the bodies before it, found {found:?}")]
     Parent {
         /// Name of the body.
         body: String,
@@ -105,7 +105,7 @@ pub enum SkeletonError {
     },
     /// A joint turns about no axis or has no range.
     #[error(
-        "expected an axis and an increasing finite range for joint \"{joint}\", found {axis} and {range:?}"
+        "expected an axis and an increasing finite range for joint {joint:?}, found {axis} and {range:?}"
     )]
     Joint {
         /// Name of the joint.

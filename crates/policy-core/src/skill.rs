@@ -33,6 +33,8 @@ pub struct Skill {
     pub policy: PolicyId,
     /// Nodes from which it may start; empty: any.
     pub entry: Vec<NodeId>,
+    /// Horizontal speed of the root below which it does not start, metres per second: a pending skill takes a run-up.
+    pub minimum_speed_mps: f32,
     /// Node that runs afterwards.
     pub returns_to: NodeId,
     /// The discriminator that ends it; without one the time limit does.
@@ -67,6 +69,8 @@ pub enum Refusal {
     Upright,
     /// The pack has no such skill.
     Unknown,
+    /// It was pending for 4 s and could not start: the way to an entry is long, or the run-up is blocked.
+    TookTooLong,
 }
 
 /// Progress of a running skill.

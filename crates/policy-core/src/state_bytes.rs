@@ -22,7 +22,7 @@ const SKILL_LEN: usize = 3;
 const PROGRESS_LEN: usize = SKILL_LEN + 4 + 4 + 1 + 4;
 const REPORT_LEN: usize =
     2 * POSITION_LEN + BLEND_LEN + 1 + 8 + PROGRESS_LEN + 2 * SKILL_LEN + 2 * (SKILL_LEN + 1) + 3;
-const FIXED_LEN: usize = 4 + REPORT_LEN + 8 + 2 + BLEND_LEN + 4 + SKILL_LEN + 4;
+const FIXED_LEN: usize = 4 + REPORT_LEN + 8 + 2 + BLEND_LEN + 4 + SKILL_LEN + 8;
 
 impl ControllerState {
     /// Number of bytes; one for all states of a pack.
@@ -49,7 +49,7 @@ impl ControllerState {
         w.skill(self.interrupted);
         w.floats(&self.targets);
         w.floats(&self.handover_from);
-        w.floats(&[self.handover_secs]);
+        w.floats(&[self.handover_secs, self.pending_secs]);
         debug_assert_eq!(w.at, w.out.len());
     }
 
@@ -87,7 +87,7 @@ impl ControllerState {
         self.interrupted = r.skill()?;
         r.floats(&mut self.targets);
         r.floats(&mut self.handover_from);
-        self.handover_secs = r.float();
+        (self.handover_secs, self.pending_secs) = (r.float(), r.float());
         Ok(())
     }
 }
@@ -166,7 +166,7 @@ impl Writer<'_> {
 const EVALUATIONS: [Evaluation; 4] =
     [Evaluation::Single, Evaluation::Cached, Evaluation::Fused, Evaluation::Actions];
 const ENDS: [SkillEnd; 3] = [SkillEnd::Recognised, SkillEnd::TimeLimit, SkillEnd::Interrupted];
-const REFUSALS: [Refusal; 2] = [Refusal::Upright, Refusal::Unknown];
+const REFUSALS: [Refusal; 3] = [Refusal::Upright, Refusal::Unknown, Refusal::TookTooLong];
 const FAULTS: [StateFault; 2] = [StateFault::NonFinite, StateFault::WrongSize];
 
 fn code<T: PartialEq>(values: &[T], value: T) -> u8 {

@@ -185,3 +185,21 @@ fn body_text_motors_credits_and_mesh_survive() {
     let error = CharacterPack::from_parts(manifest, tensors).unwrap_err().to_string();
     assert!(error.contains("28 actuation.joints") && error.contains("27"), "{error}");
 }
+
+#[test]
+fn messages_are_short_and_safe_for_a_terminal() {
+    let long = with_header(|h| {
+        h.replace(
+            "\\\"recovery\\\":\\\"get_up\\\"",
+            &format!("\\\"recovery\\\":\\\"{}\\\"", "x".repeat(9000)),
+        )
+    });
+    assert!(message(&long).len() < 400, "{}", message(&long).len());
+    let escape = refused(|m, _| m.policies[1].name = "idle\u{1b}[2J".into());
+    assert!(!escape.contains('\u{1b}'), "{escape:?}");
+    let twice = refused(|m, _| {
+        m.skills[1].name = "\u{1b}[2J".into();
+        m.skills[0].name = m.skills[1].name.clone();
+    });
+    assert!(twice.contains("skill name") && !twice.contains('\u{1b}'), "{twice:?}");
+}

@@ -305,3 +305,34 @@ fn manifests_differ_only_in_their_checksum_after_a_round_trip() {
     assert_eq!(read.tensors(), pack.tensors(), "zeros and 0.5 are exact in 16 bits");
     assert_eq!(read.to_bytes(), pack.to_bytes());
 }
+
+#[test]
+fn a_skill_that_needs_speed_takes_a_run_up_and_gives_up_when_it_is_blocked() {
+    let mut manifest = common::manifest();
+    manifest.skills[0].minimum_speed_mps = 0.8;
+    let pack = Arc::new(CharacterPack::from_parts(manifest, common::tensors(-4.0)).unwrap());
+    let roll = pack.skill_named("roll").unwrap();
+    let request = Command { skill: Some(roll), ..Command::default() };
+    let mut moving = standing();
+    moving.bodies[0].linear_velocity = policy_core::glam::Vec3::new(0.0, 0.9, 0.0);
+
+    let mut controller = Controller::new(pack.clone());
+    controller.tick(&standing(), &request, DT);
+    for _ in 0..60 {
+        controller.tick(&standing(), &Command::default(), DT);
+        assert_eq!(controller.report().target, [2.5, 0.0], "straight ahead");
+    }
+    assert_eq!((controller.report().skill, controller.report().pending_skill), (None, Some(roll)));
+    controller.tick(&moving, &Command::default(), DT);
+    assert_eq!(controller.report().skill_started, Some(roll));
+
+    let mut blocked = Controller::new(pack);
+    blocked.tick(&standing(), &request, DT);
+    let refused = (0..200).find_map(|_| {
+        blocked.tick(&standing(), &Command::default(), DT);
+        blocked.report().skill_refused
+    });
+    assert_eq!(refused, Some((roll, Refusal::TookTooLong)));
+    blocked.tick(&standing(), &Command::default(), DT);
+    assert_eq!((blocked.report().pending_skill, blocked.report().target), (None, [0.0; 2]));
+}

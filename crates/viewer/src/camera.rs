@@ -47,7 +47,12 @@ pub struct Camera {
     target: Vec3,
     /// Where it stands, while fixed.
     eye: Vec3,
+    /// Height of the character's root body, against that of a person.
+    size: f32,
 }
+
+/// Height of the root body of a standing person, metres.
+const PERSON_ROOT_M: f32 = 0.881;
 
 impl Default for Camera {
     fn default() -> Self {
@@ -58,6 +63,7 @@ impl Default for Camera {
             distance: 3.6,
             target: Vec3::new(0.0, 0.0, 0.85),
             eye: Vec3::ZERO,
+            size: 1.0,
         };
         camera.eye = camera.orbit_eye(0.0);
         camera
@@ -70,6 +76,13 @@ const LAG_SECS: f32 = 0.18;
 const TURN_RATE: f32 = 2.4;
 
 impl Camera {
+    /// Looks at a character whose root body stands `root_height` metres above the ground.
+    pub fn set_size(&mut self, root_height: f32) {
+        let size = (root_height / PERSON_ROOT_M).clamp(0.2, 5.0);
+        // The last bits of the height are no other size.
+        self.size = if (size - 1.0).abs() < 0.02 { 1.0 } else { size };
+    }
+
     /// Turns and tilts, radians; for a mouse.
     pub fn turn(&mut self, by: Vec2) {
         self.yaw -= by.x;
@@ -81,13 +94,13 @@ impl Camera {
         self.distance = (self.distance * factor).clamp(1.0, 60.0);
     }
 
-    /// Takes `dt` seconds of the right stick and of a pelvis at `pelvis` that looks along `heading`, above
-    /// ground of height `ground`.
-    pub fn advance(&mut self, dt: f32, stick: [f32; 2], pelvis: Vec3, heading: Heading, ground: f32) {
+    /// Takes `dt` seconds of the right stick and of a root body at `root` that looks along `heading`, above ground of
+    /// height `ground`.
+    pub fn advance(&mut self, dt: f32, stick: [f32; 2], root: Vec3, heading: Heading, ground: f32) {
         self.turn(Vec2::new(stick[0], stick[1]) * (TURN_RATE * dt));
         let ease = 1.0 - (-dt / LAG_SECS).exp();
-        // The height of the pelvis counts half, so that steps do not shake the picture.
-        let aim = Vec3::new(pelvis.x, pelvis.y, ground + 0.42 + 0.48 * (pelvis.z - ground));
+        // The height of the root counts half, so that steps do not shake the picture.
+        let aim = Vec3::new(root.x, root.y, ground + 0.42 * self.size + 0.48 * (root.z - ground));
         if aim.is_finite() {
             self.target += (aim - self.target) * ease;
         }
@@ -101,8 +114,8 @@ impl Camera {
     }
 
     /// Goes at once to where it would come to rest.
-    pub fn settle(&mut self, pelvis: Vec3, ground: f32) {
-        self.advance(100.0, [0.0; 2], pelvis, Heading::from_angle(self.yaw), ground);
+    pub fn settle(&mut self, root: Vec3, ground: f32) {
+        self.advance(100.0, [0.0; 2], root, Heading::from_angle(self.yaw), ground);
     }
 
     /// Where stick up leads to.

@@ -62,7 +62,7 @@ impl Gpu {
         Self::open(&instance, None).map(|(gpu, _)| gpu)
     }
 
-    /// Opens a device that can draw into `window`; also answers the surface and its adapter.
+    /// Opens a device that can draw into `window`; also returns the surface and its adapter.
     ///
     /// # Errors
     /// When the window gives no surface, and as [`Gpu::off_screen`].

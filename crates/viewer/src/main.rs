@@ -1,54 +1,77 @@
 //! `policy-space`: the demo in a window, without one, and its benchmarks.
 
+use std::io::Write as _;
 use std::process::ExitCode;
 
 use clap::Parser as _;
 use viewer::cli::open::open;
 use viewer::cli::{Cli, Task, bench, headless};
+use viewer::{signals, text};
+
+/// Longest message of an error, characters.
+const LONGEST_MESSAGE: usize = 2000;
 
 fn main() -> ExitCode {
-    // Whoever reads no further, as `head`, ends the program without a word.
+    // Exits quietly on SIGPIPE, as when `head` has read enough.
     sigpipe::reset();
-    match run(&Cli::parse()) {
-        Ok(()) => ExitCode::SUCCESS,
-        Err(error) => {
-            eprintln!("error: {error:#}");
+    let cli = Cli::parse();
+    if cli.demo.headless || cli.command.is_some() {
+        silence_device_selection();
+    }
+    let ended = run(&cli);
+    match (ended, signals::received()) {
+        (Ok(()), None) => ExitCode::SUCCESS,
+        (Ok(()), Some(signal)) => {
+            tell(&format!("ended by {}", signal.name));
+            ExitCode::from(signal.exit_status())
+        }
+        (Err(error), _) => {
+            tell(&format!("error: {error:#}"));
             ExitCode::FAILURE
         }
     }
 }
 
+/// Mesa's device selection asks the display for its graphics card, and complains on standard error where there is
+/// no session. Runs without a window have no display to ask.
+fn silence_device_selection() {
+    if std::env::var_os("XDG_RUNTIME_DIR").is_none() {
+        // SAFETY: `main` calls this before it starts any thread.
+        unsafe { std::env::set_var("NODEVICE_SELECT", "1") };
+    }
+}
+
+/// Writes a message to standard error.
+fn tell(message: &str) {
+    // Where standard error is closed or full there is no other place for it.
+    let _ = writeln!(std::io::stderr(), "{}", text::printable(message, LONGEST_MESSAGE));
+}
+
+/// Writes a line to standard output.
+fn say(line: &str) -> anyhow::Result<()> {
+    writeln!(std::io::stdout(), "{}", text::printable(line, LONGEST_MESSAGE))
+        .map_err(|error| anyhow::anyhow!("cannot write to standard output: {error}"))
+}
+
 fn run(cli: &Cli) -> anyhow::Result<()> {
+    if cli.command.is_none() {
+        signals::watch()?;
+    }
     match cli.command {
-        Some(Task::BenchCrowd(choices)) => bench::crowd(choices),
-        Some(Task::BenchFrame(choices)) => bench::frame(choices),
-        None if cli.demo.headless && cli.demo.poses.is_some() => {
-            if let Some(p) = headless::play(&cli.demo)? {
-                println!(
-                    "{}: {:.2} s of {} poses at {:.2} Hz, {} pictures",
-                    p.clip, p.seconds, p.poses, p.hz, p.frames
-                );
-            }
-            Ok(())
-        }
-        None if cli.demo.headless => {
-            let report = headless::run(&cli.demo)?;
-            println!(
-                "{:.1} s, {} characters: upright {:.1} %, {:.2} m, {} falls, {:.2} m/s, state {}",
-                report.seconds,
-                report.characters,
-                100.0 * report.upright_fraction,
-                report.distance_m,
-                report.falls,
-                report.mean_speed_mps,
-                report.state_hash,
-            );
-            Ok(())
-        }
+        Some(Task::BenchCrowd(choices)) => say(&bench::crowd(choices)?),
+        Some(Task::BenchFrame(choices)) => say(&bench::frame(choices)?),
+        None if cli.demo.headless && cli.demo.poses.is_some() => match headless::play(&cli.demo)? {
+            Some(p) => say(&format!(
+                "{}: {:.2} s of {} poses at {:.2} Hz, {} pictures",
+                p.clip, p.seconds, p.poses, p.hz, p.frames
+            )),
+            None => Ok(()),
+        },
+        None if cli.demo.headless => say(&headless::run(&cli.demo)?.summary()),
         None => {
             let mut opened = open(&cli.demo)?;
             opened.app.start_analysis();
-            viewer::window::run(&cli.demo, opened.app, opened.mesh, opened.layout)
+            viewer::window::run(&cli.demo, opened.app, opened.appearance, opened.layout)
         }
     }
 }

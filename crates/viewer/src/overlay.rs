@@ -40,7 +40,7 @@ impl Overlay {
         Self { gpu: gpu.clone(), renderer: egui_wgpu::Renderer::new(&gpu.device, format, options) }
     }
 
-    /// Takes up textures that panels changed. Once for each [`Prepared`], before it is drawn.
+    /// Uploads textures that panels changed. Once for each [`Prepared`], before it is drawn.
     pub fn upload(&mut self, prepared: &mut Prepared) {
         for (id, deltas) in prepared.textures.set.drain() {
             for delta in &deltas {

@@ -24,7 +24,7 @@ impl Pads {
         Self { pads, complaints: errors.iter().map(ToString::to_string).collect() }
     }
 
-    /// Takes in what pads said; without one the state is neutral.
+    /// Reads the pads. Without one the state is neutral.
     pub fn poll(&mut self, view: &mut PadView) {
         self.pads.poll();
         let report = self.pads.report();

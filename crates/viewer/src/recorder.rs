@@ -1,4 +1,4 @@
-//! Writes pictures and films on a thread of its own, so that the demo goes on.
+//! Writes pictures and films on a thread of its own, so that the demo does not wait for the disk.
 
 use std::io::Write as _;
 use std::path::{Path, PathBuf};
@@ -6,18 +6,22 @@ use std::process::{Child, Command, Stdio};
 use std::sync::mpsc::{Receiver, SyncSender, TrySendError, sync_channel};
 use std::thread::JoinHandle;
 
-use image::RgbaImage;
 use image::imageops::FilterType;
+use image::{ImageFormat, RgbaImage};
+
+use crate::files;
 
 /// Frames that may wait for the disk; more are dropped.
 const WAITING: usize = 8;
+/// Longest time that one picture is shown, in pictures of the film: half a minute.
+const LONGEST_SHOWN: u32 = 900;
 
 /// Why nothing can be recorded.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum RecorderError {
     /// The folder or a file can't be made.
-    #[error("{}: {source}", path.display())]
+    #[error("cannot write {}: {source}", path.display())]
     File {
         /// The path.
         path: PathBuf,
@@ -48,7 +52,7 @@ pub enum RecorderError {
     },
 }
 
-/// Kinds of recording that go on.
+/// Kinds of recording, besides single pictures.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Kind {
     /// PNG files, numbered.
@@ -69,10 +73,13 @@ impl Kind {
     }
 }
 
-/// A recording that goes on until it is finished.
+/// A picture, and when it is shown: so many pictures of the film after the start.
+type Frame = (RgbaImage, u32);
+
+/// A recording that runs until it is finished.
 #[derive(Debug)]
 pub struct Recorder {
-    frames: Option<SyncSender<RgbaImage>>,
+    frames: Option<SyncSender<Frame>>,
     thread: Option<JoinHandle<Result<(), RecorderError>>>,
     path: PathBuf,
     size: [u32; 2],
@@ -86,7 +93,7 @@ impl Recorder {
         let (frames, waiting) = sync_channel(WAITING);
         let target = path.clone();
         let thread = std::thread::spawn(move || match kind {
-            Kind::Sequence => sequence(&target, &waiting),
+            Kind::Sequence => sequence(&target, &waiting).map(|_| ()),
             Kind::Mp4 => mp4(&target, size, fps, &waiting),
             Kind::Apng => apng(&target, size, fps, &waiting),
         });
@@ -99,15 +106,16 @@ impl Recorder {
         &self.path
     }
 
-    /// Takes a picture; false when the recording has failed. A picture too many is dropped, one of another
-    /// size, as after the window was resized, is fitted into the film.
-    pub fn take(&mut self, picture: RgbaImage) -> bool {
+    /// Takes a picture that is shown `at` so many pictures of the film after the start, later than the one before;
+    /// that one is shown until then. False when the recording has failed. A picture too many is dropped, one of
+    /// another size, as after the window was resized, is fitted into the film.
+    pub fn take(&mut self, picture: RgbaImage, at: u32) -> bool {
         let [width, height] = self.size;
         let picture = match picture.dimensions() == (width, height) {
             true => picture,
             false => image::imageops::resize(&picture, width, height, FilterType::Triangle),
         };
-        match self.frames.as_ref().map(|f| f.try_send(picture)) {
+        match self.frames.as_ref().map(|f| f.try_send((picture, at))) {
             Some(Ok(())) => true,
             Some(Err(TrySendError::Full(_))) => {
                 self.dropped += 1;
@@ -128,7 +136,7 @@ impl Recorder {
         self.thread.as_ref().is_none_or(JoinHandle::is_finished)
     }
 
-    /// Ends the recording, waits until all is written and answers how many pictures were dropped.
+    /// Ends the recording, waits until all is written and returns how many pictures were dropped.
     ///
     /// # Errors
     /// When anything could not be written.
@@ -144,30 +152,39 @@ impl Recorder {
 /// Writes one picture.
 ///
 /// # Errors
-/// When its folder can't be made or it can't be written.
+/// When its folder can't be made or it can't be written; no part of it is left then.
 pub fn save(picture: &RgbaImage, path: &Path) -> Result<(), RecorderError> {
-    if let Some(folder) = path.parent() {
-        folder_at(folder)?;
-    }
-    picture.save(path).map_err(|source| RecorderError::Picture { path: path.to_owned(), source })
+    let mut bytes = std::io::Cursor::new(Vec::new());
+    picture
+        .write_to(&mut bytes, ImageFormat::Png)
+        .map_err(|source| RecorderError::Picture { path: path.to_owned(), source })?;
+    files::write(path, bytes.get_ref())
+        .map_err(|source| RecorderError::File { path: path.to_owned(), source })
 }
 
 fn folder_at(path: &Path) -> Result<(), RecorderError> {
     std::fs::create_dir_all(path).map_err(|source| RecorderError::File { path: path.to_owned(), source })
 }
 
-fn sequence(folder: &Path, frames: &Receiver<RgbaImage>) -> Result<(), RecorderError> {
-    for (number, picture) in frames.iter().enumerate() {
-        save(&picture, &folder.join(format!("frame_{number:05}.png")))?;
+/// Writes numbered pictures; returns when each of them is shown.
+fn sequence(folder: &Path, frames: &Receiver<Frame>) -> Result<Vec<u32>, RecorderError> {
+    let mut shown_at = Vec::new();
+    for (picture, at) in frames {
+        save(&picture, &part(folder, shown_at.len()))?;
+        shown_at.push(at);
     }
-    Ok(())
+    Ok(shown_at)
+}
+
+fn part(folder: &Path, number: usize) -> PathBuf {
+    folder.join(format!("frame_{number:05}.png"))
 }
 
 fn mp4(
     path: &Path,
     [width, height]: [u32; 2],
     fps: u32,
-    frames: &Receiver<RgbaImage>,
+    frames: &Receiver<Frame>,
 ) -> Result<(), RecorderError> {
     let file = |source| RecorderError::File { path: path.to_owned(), source };
     folder_at(path.parent().unwrap_or(Path::new(".")))?;
@@ -183,7 +200,16 @@ fn mp4(
         .spawn()
         .map_err(file)?;
     if let Some(mut pipe) = ffmpeg.stdin.take() {
-        for picture in frames {
+        let mut shown: Option<Frame> = None;
+        for next in frames {
+            if let Some((picture, since)) = shown.take() {
+                for _ in 0..next.1.saturating_sub(since).clamp(1, LONGEST_SHOWN) {
+                    pipe.write_all(picture.as_raw()).map_err(file)?;
+                }
+            }
+            shown = Some(next);
+        }
+        if let Some((picture, _)) = shown {
             pipe.write_all(picture.as_raw()).map_err(file)?;
         }
     }
@@ -194,38 +220,46 @@ fn mp4(
 }
 
 /// An animation must say beforehand how many pictures it has, so they are kept, compressed, until the end.
-fn apng(
+fn apng(path: &Path, size: [u32; 2], fps: u32, frames: &Receiver<Frame>) -> Result<(), RecorderError> {
+    let scratch = path.with_extension("parts");
+    let written = sequence(&scratch, frames).and_then(|shown_at| match shown_at.len() {
+        0 => Ok(()),
+        _ => animation(path, size, fps, &scratch, &shown_at),
+    });
+    let removed = match scratch.exists() {
+        true => std::fs::remove_dir_all(&scratch),
+        false => Ok(()),
+    };
+    written.and(removed.map_err(|source| RecorderError::File { path: scratch, source }))
+}
+
+fn animation(
     path: &Path,
     [width, height]: [u32; 2],
     fps: u32,
-    frames: &Receiver<RgbaImage>,
+    parts: &Path,
+    shown_at: &[u32],
 ) -> Result<(), RecorderError> {
     let encoding = |source| RecorderError::Animation { path: path.to_owned(), source };
-    let scratch = path.with_extension("parts");
-    sequence(&scratch, frames)?;
-    let mut count = 0;
-    while scratch.join(format!("frame_{count:05}.png")).exists() {
-        count += 1;
+    let file = |source| RecorderError::File { path: path.to_owned(), source };
+    // Under the folder of the parts until it is whole: what fails goes with them.
+    let whole = parts.join("whole");
+    let out = std::fs::File::create(&whole).map_err(file)?;
+    let mut encoder = png::Encoder::new(std::io::BufWriter::new(out), width, height);
+    encoder.set_color(png::ColorType::Rgba);
+    encoder.set_depth(png::BitDepth::Eight);
+    encoder.set_animated(shown_at.len() as u32, 0).map_err(encoding)?;
+    encoder.set_frame_delay(1, fps.min(1000) as u16).map_err(encoding)?;
+    let mut writer = encoder.write_header().map_err(encoding)?;
+    for (number, at) in shown_at.iter().enumerate() {
+        let part = part(parts, number);
+        let picture =
+            image::open(&part).map_err(|source| RecorderError::Picture { path: part.clone(), source })?;
+        let until = shown_at.get(number + 1).copied().unwrap_or(at + 1);
+        let shown = until.saturating_sub(*at).clamp(1, LONGEST_SHOWN);
+        writer.set_frame_delay(shown as u16, fps.min(1000) as u16).map_err(encoding)?;
+        writer.write_image_data(&picture.to_rgba8()).map_err(encoding)?;
     }
-    if count > 0 {
-        let file = std::fs::File::create(path)
-            .map_err(|source| RecorderError::File { path: path.to_owned(), source })?;
-        let mut encoder = png::Encoder::new(std::io::BufWriter::new(file), width, height);
-        encoder.set_color(png::ColorType::Rgba);
-        encoder.set_depth(png::BitDepth::Eight);
-        encoder.set_animated(count, 0).map_err(encoding)?;
-        encoder.set_frame_delay(1, fps.min(1000) as u16).map_err(encoding)?;
-        let mut writer = encoder.write_header().map_err(encoding)?;
-        for number in 0..count {
-            let part = scratch.join(format!("frame_{number:05}.png"));
-            let picture =
-                image::open(&part).map_err(|source| RecorderError::Picture { path: part.clone(), source })?;
-            writer.write_image_data(&picture.to_rgba8()).map_err(encoding)?;
-        }
-        writer.finish().map_err(encoding)?;
-    }
-    if !scratch.exists() {
-        return Ok(());
-    }
-    std::fs::remove_dir_all(&scratch).map_err(|source| RecorderError::File { path: scratch.clone(), source })
+    writer.finish().map_err(encoding)?;
+    std::fs::rename(&whole, path).map_err(file)
 }

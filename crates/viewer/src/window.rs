@@ -1,4 +1,4 @@
-//! The demo in a window: events in, frames out. Whatever surface and device do, the demo goes on.
+//! The demo in a window: events in, frames out. The demo survives the loss of surface and device.
 
 use std::path::PathBuf;
 use std::sync::Arc;
@@ -10,41 +10,45 @@ use winit::event::WindowEvent;
 use winit::event_loop::{ActiveEventLoop, ControlFlow, EventLoop};
 use winit::window::{Window, WindowId};
 
-use crate::app::App;
+use crate::app::{App, KeptLayout};
 use crate::cli::Demo;
-use crate::desk::Desk;
+use crate::frame_composer::FrameComposer;
 use crate::gpu::{Gpu, GpuError};
-use crate::mesh::SkinnedMesh;
 use crate::pads::Pads;
+use crate::render::Appearance;
+use crate::signals;
 
 /// A device that is lost twice within this time will be lost again.
 const LOSSES_APART: Duration = Duration::from_secs(10);
+
+/// Least size of the window, pixels: the bar, one column of panels and a view beside it.
+const LEAST_SIZE: [u32; 2] = [800, 500];
 
 /// Runs the demo until its window is closed.
 ///
 /// # Errors
 /// When there is no display or nothing to draw with.
-pub fn run(demo: &Demo, app: App, mesh: SkinnedMesh, layout: Option<PathBuf>) -> anyhow::Result<()> {
+pub fn run(demo: &Demo, app: App, appearance: Appearance, layout: Option<PathBuf>) -> anyhow::Result<()> {
     let events = EventLoop::new().context("no display: set DISPLAY or WAYLAND_DISPLAY, or use --headless")?;
     events.set_control_flow(ControlFlow::Poll);
     let pads = if demo.no_pad { None } else { Some(Pads::start()) };
     let mut host = Host {
-        app,
         pads,
-        layout,
-        mesh: Some(mesh),
+        layout: layout.map(|path| KeptLayout::new(path, &app.layout)),
+        app,
+        appearance: Some(appearance),
         size: demo.size,
         trace: demo.trace,
-        stage: None,
+        window: None,
         lost: None,
         failed: None,
     };
     events.run_app(&mut host)?;
-    if let Some(stage) = host.stage {
-        stage.desk.finish();
+    if let Some(open) = host.window {
+        open.composer.finish();
     }
-    if let Some(path) = &host.layout {
-        host.app.layout.save(path)?;
+    if let Some(kept) = &mut host.layout {
+        kept.keep(&host.app.layout)?;
     }
     host.failed.map_or(Ok(()), Err)
 }
@@ -53,11 +57,11 @@ pub fn run(demo: &Demo, app: App, mesh: SkinnedMesh, layout: Option<PathBuf>) ->
 struct Host {
     app: App,
     pads: Option<Pads>,
-    layout: Option<PathBuf>,
-    mesh: Option<SkinnedMesh>,
+    layout: Option<KeptLayout>,
+    appearance: Option<Appearance>,
     size: [u32; 2],
     trace: bool,
-    stage: Option<Stage>,
+    window: Option<OpenWindow>,
     /// When the device was lost last.
     lost: Option<Instant>,
     failed: Option<anyhow::Error>,
@@ -66,28 +70,28 @@ struct Host {
 impl Host {
     /// Opens the device anew when it was lost, with all that was made with it; the world does not notice.
     fn replace_lost_device(&mut self) -> anyhow::Result<()> {
-        let Some(stage) = self.stage.take_if(|stage| stage.gpu.lost().is_some()) else { return Ok(()) };
+        let Some(open) = self.window.take_if(|open| open.gpu.lost().is_some()) else { return Ok(()) };
         let (adapter, reason) =
-            (stage.gpu.adapter_name.clone(), stage.gpu.lost().unwrap_or_default().to_owned());
+            (open.gpu.adapter_name.clone(), open.gpu.lost().unwrap_or_default().to_owned());
         if let Some(since) = self.lost.map(|at| at.elapsed()).filter(|since| *since < LOSSES_APART) {
             return Err(GpuError::LostAgain { adapter, seconds: since.as_secs_f32(), reason }.into());
         }
         self.lost = Some(Instant::now());
-        let (window, mesh) = stage.close();
+        let (window, appearance) = open.close();
         (self.app.ground_changed, self.app.recording) = (true, None);
-        self.stage = Some(Stage::on(window, mesh, &mut self.app)?);
+        self.window = Some(OpenWindow::on(window, appearance, &mut self.app)?);
         self.app.notice = Some(format!("The device of {adapter} was lost and opened anew: {reason}"));
         Ok(())
     }
 }
 
 /// What there is once the window is.
-struct Stage {
+struct OpenWindow {
     window: Arc<Window>,
     surface: wgpu::Surface<'static>,
     configuration: wgpu::SurfaceConfiguration,
     gpu: Gpu,
-    desk: Desk,
+    composer: FrameComposer,
     egui: egui_winit::State,
     last: Instant,
     traced: Instant,
@@ -95,9 +99,9 @@ struct Stage {
 
 impl ApplicationHandler for Host {
     fn resumed(&mut self, events: &ActiveEventLoop) {
-        let Some(mesh) = self.mesh.take() else { return };
-        match Stage::new(events, self.size, mesh, &mut self.app) {
-            Ok(stage) => self.stage = Some(stage),
+        let Some(appearance) = self.appearance.take() else { return };
+        match OpenWindow::new(events, self.size, appearance, &mut self.app) {
+            Ok(open) => self.window = Some(open),
             Err(error) => {
                 self.failed = Some(error);
                 events.exit();
@@ -110,18 +114,18 @@ impl ApplicationHandler for Host {
             self.failed = Some(error);
             return events.exit();
         }
-        let Some(stage) = &mut self.stage else { return };
+        let Some(open) = &mut self.window else { return };
         // egui tells what it wants through its own context; nothing needs the answer.
-        let _ = stage.egui.on_window_event(&stage.window, &event);
+        let _ = open.egui.on_window_event(&open.window, &event);
         match event {
             WindowEvent::CloseRequested => events.exit(),
-            WindowEvent::Resized(size) => stage.resize([size.width, size.height]),
+            WindowEvent::Resized(size) => open.resize([size.width, size.height]),
             WindowEvent::DroppedFile(path) => self.app.dropped = Some(path),
             WindowEvent::RedrawRequested => {
                 if let Some(pads) = &mut self.pads {
                     pads.poll(&mut self.app.pad);
                 }
-                stage.frame(&mut self.app, self.trace);
+                open.frame(&mut self.app, self.trace);
                 if self.app.quit {
                     events.exit();
                 }
@@ -130,28 +134,39 @@ impl ApplicationHandler for Host {
         }
     }
 
-    fn about_to_wait(&mut self, _: &ActiveEventLoop) {
-        if let Some(stage) = &self.stage {
-            stage.window.request_redraw();
+    fn about_to_wait(&mut self, events: &ActiveEventLoop) {
+        if signals::received().is_some() {
+            return events.exit();
+        }
+        if let Some(Err(error)) = self.layout.as_mut().map(|kept| kept.keep(&self.app.layout)) {
+            self.app.notice = Some(error.to_string());
+        }
+        if let Some(open) = &self.window {
+            open.window.request_redraw();
         }
     }
 }
 
-impl Stage {
+impl OpenWindow {
     fn new(
         events: &ActiveEventLoop,
         size: [u32; 2],
-        mesh: SkinnedMesh,
+        appearance: Appearance,
         app: &mut App,
     ) -> anyhow::Result<Self> {
+        // Who asks for a smaller window gets it.
+        let least = winit::dpi::PhysicalSize::new(size[0].min(LEAST_SIZE[0]), size[1].min(LEAST_SIZE[1]));
         let size = winit::dpi::PhysicalSize::new(size[0], size[1]);
-        let attributes = Window::default_attributes().with_title("Policy Space").with_inner_size(size);
+        let attributes = Window::default_attributes()
+            .with_title("Policy Space")
+            .with_inner_size(size)
+            .with_min_inner_size(least);
         let window = Arc::new(events.create_window(attributes).context("the system gives no window")?);
-        Self::on(window, mesh, app)
+        Self::on(window, appearance, app)
     }
 
     /// Everything but the window.
-    fn on(window: Arc<Window>, mesh: SkinnedMesh, app: &mut App) -> anyhow::Result<Self> {
+    fn on(window: Arc<Window>, appearance: Appearance, app: &mut App) -> anyhow::Result<Self> {
         let (gpu, surface, adapter) = Gpu::for_window(Arc::clone(&window))?;
         let size = window.inner_size();
         let mut configuration = surface
@@ -166,9 +181,9 @@ impl Stage {
         if gpu.is_software {
             app.notice = Some(format!("No graphics card was found: {} draws, slowly.", gpu.adapter_name));
         }
-        let desk = Desk::new(&gpu, configuration.format, mesh);
+        let composer = FrameComposer::new(&gpu, configuration.format, appearance);
         let egui = egui_winit::State::new(
-            desk.context().clone(),
+            composer.context().clone(),
             egui::ViewportId::ROOT,
             &window,
             Some(window.scale_factor() as f32),
@@ -176,14 +191,14 @@ impl Stage {
             Some(gpu.device.limits().max_texture_dimension_2d as usize),
         );
         let now = Instant::now();
-        Ok(Self { window, surface, configuration, gpu, desk, egui, last: now, traced: now })
+        Ok(Self { window, surface, configuration, gpu, composer, egui, last: now, traced: now })
     }
 
-    /// Ends recordings and gives surface and device up; answers what outlives them.
-    fn close(self) -> (Arc<Window>, SkinnedMesh) {
-        let mesh = self.desk.mesh().clone();
-        self.desk.finish();
-        (self.window, mesh)
+    /// Ends recordings and gives surface and device up; returns what outlives them.
+    fn close(self) -> (Arc<Window>, Appearance) {
+        let appearance = self.composer.appearance().clone();
+        self.composer.finish();
+        (self.window, appearance)
     }
 
     fn resize(&mut self, size: [u32; 2]) {
@@ -204,7 +219,7 @@ impl Stage {
             crate::cli::trace(app);
         }
         let input = self.egui.take_egui_input(&self.window);
-        let mut output = self.desk.panels(app, input, 0.0);
+        let mut output = self.composer.panels(app, input, 0.0);
         self.egui.handle_platform_output(&self.window, std::mem::take(&mut output.platform_output));
         let size = [self.configuration.width, self.configuration.height];
         let texture = match self.surface.get_current_texture() {
@@ -214,18 +229,18 @@ impl Stage {
                 self.surface.configure(&self.gpu.device, &self.configuration);
                 None
             }
-            // Minimised, covered or late: the world goes on, there is nothing to draw into.
+            // Minimised, covered or late: the simulation runs, there is nothing to draw into.
             _ => None,
         };
         let Some(texture) = texture else {
-            self.desk.skip(output);
+            self.composer.skip(output);
             // A lost device may say so only when asked; the next event then finds it lost.
             let _ = self.gpu.device.poll(wgpu::PollType::Poll);
             std::thread::sleep(std::time::Duration::from_millis(10));
             return;
         };
         let view = texture.texture.create_view(&wgpu::TextureViewDescriptor::default());
-        self.desk.draw(app, output, &view, size);
+        self.composer.draw(app, output, &view, size);
         self.window.pre_present_notify();
         self.gpu.queue.present(texture);
         let drawn = now.elapsed().as_secs_f32() * 1e3;

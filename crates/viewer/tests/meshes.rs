@@ -1,10 +1,19 @@
 //! Humanoids from glTF: ours is what the generator makes, others are refused with a clear message.
 
 use glam::{Quat, Vec3};
-use policy_core::{BODY_NAMES, Body};
+use policy_core::{BodyId, Skeleton};
 use viewer::assets::{HUMANOID_GLB, HUMANOID_MJCF};
 use viewer::mannequin;
-use viewer::mesh::{MeshError, SkinnedMesh};
+use viewer::mesh::{MeshError, Rig, SkinnedMesh};
+
+/// What the mannequin is bound to.
+fn rig() -> Rig {
+    Rig::new(Skeleton::humanoid().into(), mannequin::rest_positions().to_vec())
+}
+
+fn body(name: &str) -> BodyId {
+    Skeleton::humanoid().body_named(name).unwrap()
+}
 
 /// The document of our mannequin and its binary chunk.
 fn parts() -> (serde_json::Value, Vec<u8>) {
@@ -33,7 +42,7 @@ fn glb(document: &serde_json::Value, binary: &[u8]) -> Vec<u8> {
 fn refused(change: impl FnOnce(&mut serde_json::Value)) -> String {
     let (mut document, binary) = parts();
     change(&mut document);
-    SkinnedMesh::from_bytes(&glb(&document, &binary)).expect_err("should be refused").to_string()
+    SkinnedMesh::from_bytes(&glb(&document, &binary), &rig()).expect_err("should be refused").to_string()
 }
 
 #[test]
@@ -46,21 +55,21 @@ fn the_asset_is_what_the_generator_makes() {
 
 #[test]
 fn its_rest_pose_is_that_of_the_mjcf() {
-    for body in Body::ALL {
-        let start = HUMANOID_MJCF.find(&format!("<body name=\"{}\"", body.name())).unwrap();
+    for (index, body) in Skeleton::humanoid().bodies().iter().enumerate() {
+        let start = HUMANOID_MJCF.find(&format!("<body name=\"{}\"", body.name)).unwrap();
         let element = HUMANOID_MJCF[start..].split('>').next().unwrap();
         let text = element.split("pos=\"").nth(1).unwrap().split('"').next().unwrap();
         let numbers: Vec<f32> = text.split_whitespace().map(|n| n.parse().unwrap()).collect();
-        if body != Body::Pelvis {
-            let apart = (Vec3::from_slice(&numbers) - mannequin::REST_OFFSETS[body.index()]).length();
-            assert!(apart < 1e-6, "{}: {apart}", body.name());
+        if body.parent.is_some() {
+            let apart = (Vec3::from_slice(&numbers) - mannequin::REST_OFFSETS[index]).length();
+            assert!(apart < 1e-6, "{}: {apart}", body.name);
         }
     }
 }
 
 #[test]
 fn joints_at_rest_leave_the_mesh_where_it_is() {
-    let mesh = SkinnedMesh::from_bytes(HUMANOID_GLB).unwrap();
+    let mesh = SkinnedMesh::from_bytes(HUMANOID_GLB, &rig()).unwrap();
     assert_eq!((mesh.joints.len(), mesh.levels.len()), (15, 3));
     for pair in mesh.levels.windows(2) {
         assert!(pair[1].vertices.len() * 3 < pair[0].vertices.len() * 2);
@@ -78,7 +87,7 @@ fn joints_at_rest_leave_the_mesh_where_it_is() {
         assert!(apart < 1e-5, "{vertex:?} moved by {apart}");
     }
     let lowest = mesh.levels[0].vertices.iter().map(|v| v.position[1]).fold(f32::INFINITY, f32::min);
-    let sole = mannequin::rest_positions()[Body::LeftFoot.index()].z - 0.05;
+    let sole = mannequin::rest_positions()[body("left_foot").index()].z - 0.05;
     assert!((lowest - sole).abs() < 2e-3, "soles at {lowest}, collision boxes at {sole}");
 }
 
@@ -87,13 +96,13 @@ fn a_t_pose_is_turned_to_the_rest_pose() {
     let (mut document, mut binary) = parts();
     // Arms of a T-pose: the left lower arm lies beside its shoulder, not below.
     let node = document["nodes"].as_array_mut().unwrap();
-    let left = BODY_NAMES.iter().position(|n| *n == "left_lower_arm").unwrap();
+    let left = body("left_lower_arm").index();
     node[left]["translation"] = serde_json::json!([0.274_788, 0.0, 0.0]);
     // Without inverse bind matrices the mesh stands in joint space: the joint's own place is its origin.
     document["skins"][0].as_object_mut().unwrap().remove("inverseBindMatrices");
     let bytes = glb(&document, &std::mem::take(&mut binary));
-    let mesh = SkinnedMesh::from_bytes(&bytes).unwrap();
-    let upper = mesh.joints.iter().find(|j| j.body == Body::LeftUpperArm).unwrap();
+    let mesh = SkinnedMesh::from_bytes(&bytes, &rig()).unwrap();
+    let upper = mesh.joints.iter().find(|j| j.body == body("left_upper_arm")).unwrap();
     // What points sideways in the mesh (x of glTF) points down in the frame of the upper arm.
     let turned = upper.body_from_mesh.transform_vector3(Vec3::X);
     assert!(turned.distance(Vec3::NEG_Z) < 1e-4, "{turned}");
@@ -103,9 +112,9 @@ fn a_t_pose_is_turned_to_the_rest_pose() {
 fn every_truncation_is_an_error_and_no_panic() {
     let lengths = (0..64).chain((64..HUMANOID_GLB.len()).step_by(48_611));
     for length in lengths {
-        assert!(SkinnedMesh::from_bytes(&HUMANOID_GLB[..length]).is_err(), "{length} bytes");
+        assert!(SkinnedMesh::from_bytes(&HUMANOID_GLB[..length], &rig()).is_err(), "{length} bytes");
     }
-    let error = SkinnedMesh::from_bytes(b"# not a mesh").unwrap_err();
+    let error = SkinnedMesh::from_bytes(b"# not a mesh", &rig()).unwrap_err();
     assert!(matches!(error, MeshError::Parse(_)), "{error}");
 }
 
@@ -149,13 +158,69 @@ fn absurd_counts_and_places_are_refused() {
 fn numbers_that_make_no_sense_are_refused() {
     let (document, mut binary) = parts();
     binary[..4].copy_from_slice(&f32::NAN.to_le_bytes());
-    let said = SkinnedMesh::from_bytes(&glb(&document, &binary)).unwrap_err().to_string();
+    let said = SkinnedMesh::from_bytes(&glb(&document, &binary), &rig()).unwrap_err().to_string();
     assert!(said.contains("finite") && said.contains("NaN"), "{said}");
     let (document, mut binary) = parts();
     let indices = document["meshes"][0]["primitives"][0]["indices"].as_u64().unwrap() as usize;
     let view = document["accessors"][indices]["bufferView"].as_u64().unwrap() as usize;
     let start = document["bufferViews"][view]["byteOffset"].as_u64().unwrap() as usize;
     binary[start..start + 2].copy_from_slice(&u16::MAX.to_le_bytes());
-    let said = SkinnedMesh::from_bytes(&glb(&document, &binary)).unwrap_err().to_string();
+    let said = SkinnedMesh::from_bytes(&glb(&document, &binary), &rig()).unwrap_err().to_string();
     assert!(said.contains("65535"), "{said}");
+}
+
+#[test]
+fn an_attribute_beyond_the_accessors_is_refused() {
+    for name in ["POSITION", "NORMAL", "WEIGHTS_0"] {
+        let said = refused(|d| d["meshes"][0]["primitives"][0]["attributes"][name] = 9_999.into());
+        assert!(said.contains("expected accessors below") && said.contains("9999"), "{said}");
+    }
+}
+
+#[test]
+fn a_header_that_is_shorter_than_itself_is_refused() {
+    for length in [0_u32, 4, 11] {
+        let mut bytes = HUMANOID_GLB.to_vec();
+        bytes[8..12].copy_from_slice(&length.to_le_bytes());
+        let said = SkinnedMesh::from_bytes(&bytes, &rig()).unwrap_err().to_string();
+        assert!(said.contains("12") && said.contains(&length.to_string()), "{said}");
+    }
+}
+
+#[test]
+fn many_primitives_of_one_accessor_are_refused_before_they_are_read() {
+    let said = refused(|d| {
+        let primitive = d["meshes"][0]["primitives"][0].clone();
+        d["meshes"][0]["primitives"] = vec![primitive; 2_000].into();
+    });
+    assert!(said.contains("expected at most 2000000 vertices"), "{said}");
+}
+
+#[test]
+fn every_number_of_the_document_may_be_anything() {
+    let (document, binary) = parts();
+    let paths = numbers(&document, String::new());
+    // Every 7th number, so that the test stays short; the places differ from value to value.
+    for (start, value) in [0_i64, -1, 5, 255, 65_535, 4_294_967_295, i64::MAX].into_iter().enumerate() {
+        for path in paths.iter().skip(start).step_by(7) {
+            let mut changed = document.clone();
+            *changed.pointer_mut(path).unwrap() = value.into();
+            // Some changes do no harm; none may panic.
+            let _ = SkinnedMesh::from_bytes(&glb(&changed, &binary), &rig());
+        }
+    }
+}
+
+/// JSON pointers to the numbers of a document.
+fn numbers(value: &serde_json::Value, path: String) -> Vec<String> {
+    match value {
+        serde_json::Value::Number(_) => vec![path],
+        serde_json::Value::Array(all) => {
+            all.iter().enumerate().flat_map(|(i, v)| numbers(v, format!("{path}/{i}"))).collect()
+        }
+        serde_json::Value::Object(all) => {
+            all.iter().flat_map(|(k, v)| numbers(v, format!("{path}/{k}"))).collect()
+        }
+        _ => Vec::new(),
+    }
 }

@@ -6,7 +6,7 @@ use common::app_with;
 use egui::accesskit::Role;
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable as _;
-use policy_core::{BlendMode, Button, Goal};
+use policy_core::{Blend, BlendMode, Button, Goal, NodeId, SkillId};
 use viewer::analysis::Analysis;
 use viewer::app::{App, Failure, PanelKind, Preset, Record, Side};
 use viewer::camera::CameraMode;
@@ -58,7 +58,7 @@ fn a_ruler_overrides_the_trigger_both_ways() {
     let Some(Goal::Path { path: asked, coordinate }) = harness.state().sim.overrides.goal else {
         panic!("no override: {:?}", harness.state().sim.overrides.goal);
     };
-    assert!(asked == path && coordinate > 0.2, "{asked} {coordinate}");
+    assert!(asked == path && coordinate > 0.2, "{asked:?} {coordinate}");
     // The world follows the override ...
     let start = harness.state().sim.player().report().position;
     for _ in 0..15 {
@@ -72,7 +72,7 @@ fn a_ruler_overrides_the_trigger_both_ways() {
     harness.state_mut().pad.state.left_stick = [0.0, 1.0];
     harness.state_mut().tick();
     let report = *harness.state().sim.player().report();
-    let coordinate = harness.state().sim.pack().graph().paths()[path].coordinate(report.goal);
+    let coordinate = harness.state().sim.pack().graph().path(path).coordinate(report.goal);
     assert_eq!(coordinate, Some(1.0));
 }
 
@@ -120,11 +120,11 @@ fn the_blend_mode_changes_and_a_ghost_comes_and_goes() {
     harness.run_steps(2);
     harness.get_by_role_and_label(Role::RadioButton, "actions").click();
     harness.run_steps(2);
-    assert_eq!(harness.state().sim.overrides.mode, BlendMode::Actions);
+    assert_eq!(harness.state().sim.blend_mode(), BlendMode::Actions);
     click(&mut harness, "ghost: switch");
     assert_eq!(harness.state().sim.ghost().map(|g| g.mode()), Some(BlendMode::Switch));
     harness.state_mut().tick();
-    click(&mut harness, "nobody");
+    click(&mut harness, "no ghost");
     assert!(harness.state().sim.ghost().is_none());
 }
 
@@ -137,10 +137,10 @@ fn the_skills_panel_starts_a_skill_or_says_there_is_none() {
         None => assert!(harness.query_by_label("This pack has no episodic skills.").is_some()),
         Some(name) => {
             click(&mut harness, name);
-            assert_eq!(harness.state().sim.overrides.skill, Some(0));
+            assert_eq!(harness.state().sim.overrides.skill, Some(SkillId::new(0)));
             harness.state_mut().tick();
             let report = harness.state().sim.player().report();
-            assert!(report.skill.is_some() || report.pending_skill == Some(0));
+            assert!(report.skill.is_some() || report.pending_skill == Some(SkillId::new(0)));
         }
     }
 }
@@ -166,9 +166,10 @@ fn the_analysis_shows_points_of_every_policy() {
     let analysis = Analysis::of(app.sim.pack()).unwrap();
     let policies = app.sim.pack().policies().len();
     for node in 0..policies {
-        assert!(analysis.cloud.iter().any(|p| p.node == node), "no point of policy {node}");
+        let id = NodeId::new(node);
+        assert!(analysis.cloud.iter().any(|p| p.node == id), "no point of policy {node}");
         // A blend of one policy alone lies on its node.
-        let blend = policy_core::Blend::single(node);
+        let blend = Blend::single(id.into());
         let apart = analysis.parameters.blend(&blend).distance(analysis.parameters.nodes[node]);
         assert!(apart < 1e-3, "{apart}");
     }
@@ -193,7 +194,7 @@ fn physics_pauses_steps_goes_back_and_changes_the_ground() {
     for _ in 0..10 {
         harness.state_mut().tick();
     }
-    let here = harness.state().sim.player().state;
+    let here = harness.state().sim.player().state.clone();
     harness.state_mut().tick();
     click(&mut harness, "Step back");
     assert_eq!(harness.state().sim.player().state, here);
@@ -201,10 +202,156 @@ fn physics_pauses_steps_goes_back_and_changes_the_ground() {
     click(&mut harness, "wavy");
     assert_eq!(harness.state().sim.config().ground, GroundKind::Wavy);
     assert!(harness.state().sim.model().height_field().is_some());
-    click(&mut harness, "Go on");
+    click(&mut harness, "Play");
     assert!(!harness.state().clock.paused);
     click(&mut harness, "Reset");
     assert!(harness.state().sim.player().position().length() < 0.1);
+}
+
+#[test]
+fn play_goes_on_after_stepping_back_and_scrubbing() {
+    let mut harness = open(PanelKind::Physics);
+    for _ in 0..30 {
+        harness.state_mut().tick();
+    }
+    harness.run_steps(2);
+    for back in 1..=7 {
+        click(&mut harness, "Step back");
+        assert_eq!(harness.state().sim.history().1, back);
+    }
+    click(&mut harness, "Play");
+    harness.run_steps(3);
+    assert!(!harness.state().clock.paused, "the slider has paused it again");
+    let before = harness.state().sim.ticks();
+    harness.state_mut().advance(0.2);
+    assert!(harness.state().sim.ticks() > before);
+}
+
+#[test]
+fn tab_leaves_the_keyboard_to_the_game() {
+    let mut harness = open(PanelKind::Physics);
+    for _ in 0..3 {
+        harness.key_press(egui::Key::Tab);
+        harness.run_steps(2);
+    }
+    harness.key_down(egui::Key::W);
+    harness.run_steps(2);
+    harness.state_mut().advance(0.2);
+    assert!(harness.state().input().left_stick[1] > 0.9, "{:?}", harness.state().input());
+    assert!(harness.state().layout.hidden, "three times Tab hides, shows and hides");
+}
+
+#[test]
+fn a_number_can_still_be_typed() {
+    let mut harness = open(PanelKind::Layers);
+    harness.run_steps(2);
+    harness.get_by_role_and_label(Role::TextInput, "Name").click();
+    harness.run_steps(2);
+    harness.key_down(egui::Key::W);
+    harness.run_steps(2);
+    harness.state_mut().advance(0.2);
+    assert_eq!(harness.state().input().left_stick, [0.0; 2], "the letter is for the text field");
+    // Escape leaves the field, and nothing else.
+    harness.key_press(egui::Key::Escape);
+    harness.run_steps(3);
+    assert!(!harness.state().leaving && !harness.state().quit);
+}
+
+#[test]
+fn escape_asks_before_it_leaves() {
+    let mut harness = open(PanelKind::Record);
+    let escape = |harness: &mut Harness<'_, App>| {
+        harness.key_press(egui::Key::Escape);
+        harness.run_steps(3);
+    };
+    escape(&mut harness);
+    assert!(harness.state().leaving && !harness.state().quit);
+    assert!(harness.query_by_role_and_label(Role::Button, "Stay (Esc)").is_some());
+    escape(&mut harness);
+    assert!(!harness.state().leaving && !harness.state().quit);
+    escape(&mut harness);
+    click(&mut harness, "Leave (Enter)");
+    assert!(harness.state().quit);
+}
+
+#[test]
+fn escape_closes_a_drop_down_and_nothing_else() {
+    let mut harness = open(PanelKind::Layers);
+    harness.run_steps(2);
+    harness.get_by_role_and_label(Role::ComboBox, "0 is").click();
+    harness.run_steps(3);
+    assert!(egui::Popup::is_any_open(&harness.ctx), "the drop-down is open");
+    harness.key_press(egui::Key::Escape);
+    harness.run_steps(3);
+    assert!(!egui::Popup::is_any_open(&harness.ctx));
+    assert!(!harness.state().leaving && !harness.state().quit);
+}
+
+#[test]
+fn a_trigger_takes_over_again_from_a_dragged_path() {
+    let mut app = app_with(PanelKind::Paths);
+    let speed = app.sim.pack().graph().path_named("speed").unwrap();
+    app.pad.state.left_stick = [0.0, 1.0];
+    app.pad.state.right_trigger = 0.5;
+    app.apply(viewer::app::ViewerCommand::Goal(Some(Goal::Path { path: speed, coordinate: 1.0 })));
+    app.tick();
+    assert!(app.sim.overrides.goal.is_some(), "a trigger that is held still is no wish");
+    app.pad.state.right_trigger = 0.1;
+    app.tick();
+    assert!(app.sim.overrides.goal.is_some(), "nor is one that is let go");
+    app.pad.state.right_trigger = 0.4;
+    app.tick();
+    assert_eq!(app.sim.overrides.goal, None);
+}
+
+#[test]
+fn the_status_line_says_what_the_layers_blend() {
+    let mut harness = open(PanelKind::Layers);
+    harness.state_mut().layers = viewer::app::Layers {
+        active: true,
+        automatic: false,
+        t: [0.25, 0.5, 1.0],
+        ..harness.state().layers.clone()
+    };
+    harness.state_mut().tick();
+    let place = viewer::app::place(harness.state());
+    assert_eq!(place, "layers: idle - walk 25, 50, 100 %");
+}
+
+#[test]
+fn help_fits_the_window() {
+    for size in [egui::vec2(1280.0, 720.0), egui::vec2(800.0, 500.0)] {
+        let mut app = app_with(PanelKind::Record);
+        app.help = true;
+        let mut harness =
+            Harness::builder().with_size(size).build_ui_state(|ui, app: &mut App| app.ui(ui, 0.0), app);
+        harness.run_steps(4);
+        let rect = harness.ctx.memory(|m| m.area_rect(egui::Id::unique("help"))).unwrap();
+        assert!(rect.top() >= 0.0 && rect.bottom() <= size.y, "{rect} in {size}");
+    }
+}
+
+#[test]
+fn panels_leave_a_view_however_small_the_window() {
+    for (width, least) in [(1280.0, 400.0), (800.0, 400.0), (640.0, 300.0), (320.0, 320.0)] {
+        let layout = viewer::app::PanelLayout::default();
+        let app = App::new(common::simulation(), layout);
+        let mut harness = Harness::builder()
+            .with_size(egui::vec2(width, 480.0))
+            .build_ui_state(|ui, app: &mut App| app.ui(ui, 0.0), app);
+        harness.run_steps(3);
+        let free = harness.ctx.content_rect().width() - side_widths(&harness);
+        assert!(free >= least, "{width}: {free} are left");
+    }
+}
+
+/// Width of the columns of panels.
+fn side_widths(harness: &Harness<'_, App>) -> f32 {
+    let width = |id: &str| {
+        egui::containers::panel::PanelState::load(&harness.ctx, egui::Id::unique(id))
+            .map_or(0.0, |s| s.outer_rect.width())
+    };
+    width("left") + width("right")
 }
 
 #[test]
@@ -243,16 +390,16 @@ fn a_failure_offers_rewind_and_reset() {
         app.tick();
     }
     let ticks = app.sim.ticks();
-    app.failure = Some(Failure { what: "it blew up".into(), dump: Some("x.json".into()) });
+    app.failure = Some(Failure { what: "it blew up".into(), replay: Some("x.json".into()) });
     app.advance(1.0);
     assert_eq!(app.sim.ticks(), ticks, "a failed demo must wait");
     let mut harness = harness(app);
     harness.run_steps(2);
     assert!(harness.query_by_label("it blew up").is_some());
-    click(&mut harness, "Rewind and go on");
+    click(&mut harness, "Rewind and continue");
     assert_eq!(harness.state().failure, None);
     assert_eq!(harness.state().sim.history().1, 60);
-    harness.state_mut().failure = Some(Failure { what: "again".into(), dump: None });
+    harness.state_mut().failure = Some(Failure { what: "again".into(), replay: None });
     harness.run_steps(2);
     click(&mut harness, "Start again");
     assert!(harness.state().failure.is_none() && harness.state().sim.player().position().length() < 0.1);
@@ -314,4 +461,36 @@ fn dragging_a_body_pulls_it() {
     harness.drop_at(at);
     harness.run_steps(2);
     assert_eq!(harness.state().grab, None);
+}
+
+#[test]
+fn a_press_beside_a_limb_turns_the_camera_alone_and_one_on_it_pulls_alone() {
+    let mut app = app_with(PanelKind::Record);
+    app.layout.hidden = true;
+    app.clock.paused = true;
+    let screen = egui::vec2(900.0, 700.0);
+    let view = app.camera.view(0.0);
+    let on_screen = |point: glam::Vec3| {
+        let clip = view.clip_from_world(screen.x / screen.y).project_point3(point);
+        egui::pos2((clip.x * 0.5 + 0.5) * screen.x, (0.5 - clip.y * 0.5) * screen.y)
+    };
+    let arm = app.sim.player().poses(1.0).positions
+        [policy_core::Skeleton::humanoid().body_named("left_lower_arm").unwrap().index()];
+    // The camera looks along x: 8 cm further to the left is beside the arm.
+    for (at, pulls) in [(on_screen(arm + glam::Vec3::Y * 0.08), false), (on_screen(arm), true)] {
+        let mut harness = harness(app_with(PanelKind::Record));
+        harness.state_mut().layout.hidden = true;
+        harness.state_mut().clock.paused = true;
+        harness.run_steps(2);
+        let yaw = harness.state().camera.yaw;
+        harness.drag_at(at);
+        harness.run_steps(2);
+        // Towards the body, so that the mouse is over it once it is a drag.
+        for step in 1..=6 {
+            harness.hover_at(at + egui::vec2(8.0 * step as f32, 0.0));
+            harness.run_steps(1);
+        }
+        let turned = (harness.state().camera.yaw - yaw).abs() > 1e-3;
+        assert_eq!((harness.state().grab.is_some(), turned), (pulls, !pulls), "at {at}");
+    }
 }

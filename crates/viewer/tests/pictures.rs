@@ -5,13 +5,11 @@ mod common;
 use common::{gpu, simulation};
 use egui_kittest::{SnapshotOptions, try_image_snapshot_options};
 use image::RgbaImage;
-use viewer::app::{App, Layout, PanelKind, Side};
-use viewer::assets;
-use viewer::desk::Desk;
-use viewer::mesh::SkinnedMesh;
-use viewer::render::{OffScreen, RenderConfig, Renderer, SHADERS, Scene};
+use viewer::app::{App, PanelKind, PanelLayout, Side};
+use viewer::frame_composer::FrameComposer;
+use viewer::render::{Appearance, OffScreen, RenderConfig, Renderer, SHADERS, Scene};
+use viewer::scene_setup::{Shown, Trail, ground_grid, set_scene};
 use viewer::sim::{GroundKind, SimConfig};
-use viewer::stage::{Shown, Trail, ground_grid, set_scene};
 
 const SIZE: [u32; 2] = [320, 240];
 
@@ -20,8 +18,8 @@ const SCENE: usize = 50;
 /// Of pictures with panels; a letter is about thirty pixels.
 const PANELS: usize = 2000;
 
-fn mesh() -> SkinnedMesh {
-    SkinnedMesh::from_bytes(assets::HUMANOID_GLB).unwrap()
+fn appearance(app: &App) -> Appearance {
+    viewer::appearance::of_pack(app.sim.pack(), app.sim.model()).0
 }
 
 /// Compares where the same software renderer drew the committed picture; other adapters round otherwise.
@@ -50,7 +48,8 @@ fn every_shader_passes_naga() {
 }
 
 fn draw(gpu: &viewer::gpu::Gpu, app: &App, shown: &Shown) -> RgbaImage {
-    let mut renderer = Renderer::new(gpu, OffScreen::FORMAT, RenderConfig::for_adapter(true), mesh());
+    let mut renderer =
+        Renderer::new(gpu, OffScreen::FORMAT, RenderConfig::for_adapter(true), appearance(app));
     let model = app.sim.model();
     renderer.set_ground(ground_grid(model.height_field(), model.height_at(1e4, 1e4)).as_ref());
     let mut scene = Scene::default();
@@ -61,7 +60,7 @@ fn draw(gpu: &viewer::gpu::Gpu, app: &App, shown: &Shown) -> RgbaImage {
 #[test]
 fn the_standing_mannequin_looks_as_it_did() {
     let Some(gpu) = gpu() else { return };
-    let app = App::new(simulation(), Layout::default());
+    let app = App::new(simulation(), PanelLayout::default());
     let picture = draw(&gpu, &app, &Shown::default());
     // Sky above, mannequin in the middle, ground below: whatever the adapter.
     let [top, middle] = [(10, 5), (SIZE[0] / 2, SIZE[1] / 2)].map(|(x, y)| picture.get_pixel(x, y).0);
@@ -77,7 +76,7 @@ fn the_standing_mannequin_looks_as_it_did() {
 #[test]
 fn hills_and_a_crowd_look_as_they_did() {
     let Some(gpu) = gpu() else { return };
-    let mut app = App::new(simulation(), Layout::default());
+    let mut app = App::new(simulation(), PanelLayout::default());
     app.sim.rebuild(SimConfig { ground: GroundKind::Wavy, characters: 12, ..SimConfig::default() }).unwrap();
     (app.camera.distance, app.camera.pitch) = (9.0, 0.45);
     app.follow(10.0, 1.0);
@@ -98,10 +97,10 @@ fn panels_over_the_picture_look_as_they_did() {
     for (name, left, right) in groups {
         let on = |side| move |kind: &PanelKind| (*kind, side);
         let open = left.iter().map(on(Side::Left)).chain(right.iter().map(on(Side::Right)));
-        let app = App::new(simulation(), Layout { open: open.collect(), ..Layout::default() });
+        let app = App::new(simulation(), PanelLayout { open: open.collect(), ..PanelLayout::default() });
         compare(&gpu, &draw_with_panels(&gpu, app), name, PANELS);
     }
-    let layout = Layout { open: vec![(Analysis, Side::Left)], ..Layout::default() };
+    let layout = PanelLayout { open: vec![(Analysis, Side::Left)], ..PanelLayout::default() };
     let mut app = App::new(simulation(), layout);
     app.analysis = viewer::analysis::Analysis::of(app.sim.pack());
     compare(&gpu, &draw_with_panels(&gpu, app), "panels_analysis", PANELS);
@@ -109,12 +108,12 @@ fn panels_over_the_picture_look_as_they_did() {
 
 /// The second frame of the demo: the first one lays out its widgets.
 fn draw_with_panels(gpu: &viewer::gpu::Gpu, mut app: App) -> RgbaImage {
-    let mut desk = Desk::new(gpu, OffScreen::FORMAT, mesh());
+    let mut composer = FrameComposer::new(gpu, OffScreen::FORMAT, appearance(&app));
     let mut frame = |time: f64| {
         let rect = egui::Rect::from_min_size(egui::Pos2::ZERO, egui::vec2(640.0, 480.0));
         let input = egui::RawInput { screen_rect: Some(rect), time: Some(time), ..Default::default() };
-        let output = desk.panels(&mut app, input, 0.7);
-        desk.picture(&mut app, output, [640, 480], true).unwrap()
+        let output = composer.panels(&mut app, input, 0.7);
+        composer.picture(&mut app, output, [640, 480], true).unwrap()
     };
     frame(0.0);
     frame(1.0)
@@ -123,9 +122,10 @@ fn draw_with_panels(gpu: &viewer::gpu::Gpu, mut app: App) -> RgbaImage {
 #[test]
 fn a_lost_device_is_an_error_and_no_panic() {
     let Some(gpu) = gpu() else { return };
-    let mut app = App::new(simulation(), Layout::default());
-    let mut desk = Desk::new(&gpu, OffScreen::FORMAT, mesh());
-    let mut renderer = Renderer::new(&gpu, OffScreen::FORMAT, RenderConfig::for_adapter(true), mesh());
+    let mut app = App::new(simulation(), PanelLayout::default());
+    let mut composer = FrameComposer::new(&gpu, OffScreen::FORMAT, appearance(&app));
+    let mut renderer =
+        Renderer::new(&gpu, OffScreen::FORMAT, RenderConfig::for_adapter(true), appearance(&app));
     let mut scene = Scene::default();
     set_scene(&mut scene, &app.sim, &app.camera, 0.7, (1.0, &Shown::default(), &Trail::default()));
     let target = OffScreen::new(&gpu, SIZE);
@@ -134,6 +134,6 @@ fn a_lost_device_is_an_error_and_no_panic() {
     let said = renderer.picture(&target, &scene).unwrap_err().to_string();
     assert!(said.contains("lost"), "{said}");
     assert!(gpu.lost().is_some(), "whoever draws next has to know");
-    let output = desk.panels(&mut app, egui::RawInput::default(), 0.7);
-    assert!(desk.picture(&mut app, output, SIZE, true).is_err());
+    let output = composer.panels(&mut app, egui::RawInput::default(), 0.7);
+    assert!(composer.picture(&mut app, output, SIZE, true).is_err());
 }

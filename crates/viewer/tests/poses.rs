@@ -6,11 +6,14 @@ use std::path::Path;
 use std::process::Command;
 
 use common::{gpu, simulation};
-use physics_bridge::{Pose, QPOS_LEN};
-use policy_core::{BlendMode, Body, GamepadState, Heading};
-use viewer::app::{App, Layout, ViewerCommand};
-use viewer::poses::{POSES_FORMAT, Poses, PosesError};
+use physics_bridge::Pose;
+use policy_core::{BlendMode, GamepadState, Heading};
+use viewer::app::{App, PanelLayout, ViewerCommand};
+use viewer::pose_clip::{POSES_FORMAT, PoseClip, PoseClipError};
 use viewer::sim::{Playback, Simulation};
+
+/// Numbers of a pose of the humanoid.
+const QPOS_LEN: usize = 35;
 
 /// Most poses, and largest file, that are read.
 const MOST_POSES: usize = 100_000;
@@ -25,18 +28,18 @@ fn file(hz: &str, qpos: &str) -> String {
     format!(r#"{{"format":"{POSES_FORMAT}","clip":"walk","hz":{hz},"qpos":{qpos}}}"#)
 }
 
-fn load(bytes: &[u8]) -> Result<Poses, PosesError> {
+fn load(bytes: &[u8]) -> Result<PoseClip, PoseClipError> {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("clip.json");
     std::fs::write(&path, bytes).unwrap();
-    Poses::load(&path)
+    PoseClip::load(&path, QPOS_LEN)
 }
 
 #[test]
 fn poses_are_read_as_they_were_written() {
     let poses = load(file("29.5", &format!("[{0},{0}]", row(35))).as_bytes()).unwrap();
     assert_eq!((poses.clip.as_str(), poses.hz, poses.qpos.len()), ("walk", 29.5, 2));
-    let mut expected = [0.0; QPOS_LEN];
+    let mut expected = vec![0.0; QPOS_LEN];
     expected[3] = 1.0;
     assert_eq!(poses.qpos[1], expected);
 }
@@ -92,12 +95,13 @@ fn too_many_poses_and_too_large_a_file_are_refused() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("huge.json");
     std::fs::File::create(&path).unwrap().set_len(MOST_BYTES + 1).unwrap();
-    assert!(matches!(Poses::load(&path), Err(PosesError::Size { .. })));
-    assert!(matches!(Poses::load(folder.path()), Err(PosesError::File { .. })));
+    let said = PoseClip::load(&path, QPOS_LEN).unwrap_err().to_string();
+    assert!(said.contains("expected at most 67108864 bytes, found 67108865"), "{said}");
+    assert!(matches!(PoseClip::load(folder.path(), QPOS_LEN), Err(PoseClipError::File { .. })));
 }
 
 /// The humanoid as it stands, with the right arm turned aside by so many radians and moved along x.
-fn pose(sim: &Simulation, arm: f64, x: f64) -> [f64; QPOS_LEN] {
+fn pose(sim: &Simulation, arm: f64, x: f64) -> Vec<f64> {
     let Pose { mut qpos, .. } = sim.character(0).pose();
     // The second hinge of the right shoulder.
     qpos[7 + 7] += arm;
@@ -105,7 +109,7 @@ fn pose(sim: &Simulation, arm: f64, x: f64) -> [f64; QPOS_LEN] {
     qpos
 }
 
-fn write(path: &Path, hz: f64, qpos: &[[f64; QPOS_LEN]]) {
+fn write(path: &Path, hz: f64, qpos: &[Vec<f64>]) {
     let rows: Vec<&[f64]> = qpos.iter().map(|row| &row[..]).collect();
     let text = serde_json::json!({ "format": POSES_FORMAT, "clip": "wave", "hz": hz, "qpos": rows });
     std::fs::write(path, text.to_string()).unwrap();
@@ -125,12 +129,12 @@ fn a_clip_is_played_in_its_own_time_round_and_round() {
     // Three ticks a pose, two thirds of the way into the last one it rests at the last pose.
     for (tick, x) in (1..).zip([0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.6, 0.6, 0.0, 0.1]) {
         assert!(sim.tick(&GamepadState::default(), Heading::FORWARD).is_empty());
-        let pelvis = sim.poses(0, 1.0).positions[Body::Pelvis.index()];
+        let pelvis = sim.poses(0, 1.0).positions[0];
         assert!((pelvis.x - start - x).abs() < 1e-4, "tick {tick}: {pelvis}, expected {x}");
         assert_eq!(sim.playback().unwrap().has_restarted(), tick == 9, "tick {tick}");
     }
     // Half way from the tick before, and what the character itself was put to: the pose before.
-    let between = sim.poses(0, 0.5).positions[Body::Pelvis.index()];
+    let between = sim.poses(0, 0.5).positions[0];
     assert!((between.x - start - 0.05).abs() < 1e-4, "{between}");
     assert!((sim.player().position().x - start).abs() < 1e-4);
     sim.reset();
@@ -144,12 +148,12 @@ fn a_clip_can_be_paused_but_not_steered() {
     let mut sim = simulation();
     write(&path, 30.0, &[pose(&sim, 0.0, 0.0), pose(&sim, 0.5, 0.0)]);
     sim.play(Playback::load(&path, sim.model()).unwrap());
-    let mut app = App::new(sim, Layout::default());
+    let mut app = App::new(sim, PanelLayout::default());
     app.apply(ViewerCommand::Ghost(Some(BlendMode::Switch)));
     assert!(app.notice.take().is_some_and(|n| n.contains("A clip is shown")));
     assert!(app.sim.ghost().is_none());
     app.apply(ViewerCommand::Characters(4));
-    assert_eq!((app.sim.actors().len(), app.notice.take().is_some()), (1, true));
+    assert_eq!((app.sim.characters().len(), app.notice.take().is_some()), (1, true));
     app.apply(ViewerCommand::Pause(true));
     app.advance(0.2);
     assert!(app.clock.paused && app.notice.is_none() && app.sim.ticks() == 0);

@@ -19,7 +19,7 @@ fn record(kind: Kind, path: &Path) {
             true => Rgba([255, 0, 0, 255]),
             false => Rgba([0, 0, 255, 255]),
         });
-        assert!(recorder.take(picture));
+        assert!(recorder.take(picture, frame));
     }
     assert_eq!(recorder.finish().unwrap(), 0, "nothing was dropped");
 }
@@ -39,7 +39,7 @@ fn a_sequence_holds_every_picture_in_one_size() {
 #[test]
 fn an_animation_holds_every_picture() {
     let folder = tempfile::tempdir().unwrap();
-    let path = folder.path().join("film.png");
+    let path = folder.path().join("film.apng");
     record(Kind::Apng, &path);
     let decoder = png::Decoder::new(std::io::BufReader::new(std::fs::File::open(&path).unwrap()));
     let reader = decoder.read_info().unwrap();
@@ -65,4 +65,27 @@ fn a_film_is_one_that_ffmpeg_reads() {
     assert_eq!(picture.dimensions(), (SIZE[0], SIZE[1]));
     let blue = picture.get_pixel(40, 40);
     assert!(blue[2] > 200 && blue[0] < 60, "{blue:?}");
+}
+
+#[test]
+fn an_animation_shows_each_picture_as_long_as_the_demo_did() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("film.apng");
+    let mut recorder = Recorder::start(Kind::Apng, path.clone(), SIZE, 30);
+    // A slow machine: the second picture comes a third of a second after the first.
+    for at in [0, 10, 12, 13] {
+        assert!(recorder.take(RgbaImage::new(SIZE[0], SIZE[1]), at));
+    }
+    recorder.finish().unwrap();
+    let decoder = png::Decoder::new(std::io::BufReader::new(std::fs::File::open(&path).unwrap()));
+    let mut reader = decoder.read_info().unwrap();
+    let mut bytes = vec![0; reader.output_buffer_size().unwrap()];
+    let shown: Vec<[u16; 2]> = (0..4)
+        .map(|_| {
+            reader.next_frame(&mut bytes).unwrap();
+            let control = reader.info().frame_control.unwrap();
+            [control.delay_num, control.delay_den]
+        })
+        .collect();
+    assert_eq!(shown, [[10, 30], [2, 30], [1, 30], [1, 30]]);
 }

@@ -136,3 +136,146 @@ fn files_that_are_no_good_are_named() {
         assert!(said.contains(named) && !said.contains("panicked"), "{said}");
     }
 }
+
+/// Starts a run of an hour that draws pictures, sends it `signal` once it has drawn some, and returns its end.
+#[cfg(unix)]
+fn interrupted(folder: &Path, signal: &str) -> Output {
+    let line = ["--headless", "--seconds", "3600", "--report", "r.json", "--trace"];
+    let mut demo = Command::new(env!("CARGO_BIN_EXE_policy-space"))
+        .current_dir(folder)
+        .args(line)
+        .stdout(std::process::Stdio::piped())
+        .stderr(std::process::Stdio::piped())
+        .spawn()
+        .unwrap();
+    // The first line of the trace says that it runs.
+    let mut first = [0];
+    std::io::Read::read_exact(demo.stderr.as_mut().unwrap(), &mut first).unwrap();
+    let sent = Command::new("kill").args([signal, &demo.id().to_string()]).status().unwrap();
+    assert!(sent.success());
+    demo.wait_with_output().unwrap()
+}
+
+#[cfg(unix)]
+#[test]
+fn a_signal_ends_a_run_with_its_report_and_its_own_exit_status() {
+    for (signal, name, status) in
+        [("-INT", "SIGINT", 130), ("-TERM", "SIGTERM", 143), ("-HUP", "SIGHUP", 129)]
+    {
+        let folder = tempfile::tempdir().unwrap();
+        let output = interrupted(folder.path(), signal);
+        let said = String::from_utf8_lossy(&output.stderr).into_owned();
+        assert_eq!(output.status.code(), Some(status), "{said}");
+        assert!(said.contains(&format!("ended by {name}")), "{said}");
+        let report: serde_json::Value =
+            serde_json::from_slice(&std::fs::read(folder.path().join("r.json")).unwrap()).unwrap();
+        assert_eq!(report["ended_by"], name);
+        assert!(report["seconds"].as_f64().is_some_and(|s| s < 3600.0), "{report}");
+    }
+}
+
+#[test]
+fn a_script_of_more_than_an_hour_is_refused_unless_a_part_is_asked_for() {
+    let folder = tempfile::tempdir().unwrap();
+    std::fs::write(folder.path().join("long.ron"), "(duration: 4000.0, entries: [(at: 0.0)])").unwrap();
+    let output = run(folder.path(), &["--headless", "--script", "long.ron"]);
+    let said = String::from_utf8_lossy(&output.stderr).into_owned();
+    assert_eq!(output.status.code(), Some(1), "{said}");
+    assert!(said.contains("at most 3600 s, found 4000 s"), "{said}");
+    let output = run(folder.path(), &["--headless", "--script", "long.ron", "--seconds", "0.1"]);
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+}
+
+#[test]
+fn one_character_is_not_several() {
+    let folder = tempfile::tempdir().unwrap();
+    let output = run(folder.path(), &["--headless", "--seconds", "0.1"]);
+    let told = String::from_utf8_lossy(&output.stdout).into_owned();
+    assert!(told.contains("1 character:") && told.contains("0 falls"), "{told}");
+}
+
+#[cfg(unix)]
+#[test]
+fn pipes_and_devices_are_refused_and_not_waited_for() {
+    let folder = tempfile::tempdir().unwrap();
+    assert!(Command::new("mkfifo").arg(folder.path().join("pipe")).status().unwrap().success());
+    for argument in ["--script", "--recording", "--pack", "--mesh", "--poses"] {
+        for file in ["pipe", "/dev/zero"] {
+            let output = run(folder.path(), &["--headless", "--seconds", "0.1", argument, file]);
+            let said = String::from_utf8_lossy(&output.stderr).into_owned();
+            assert_eq!(output.status.code(), Some(1), "{argument} {file}: {said}");
+            assert!(said.contains(file) && said.contains("expected a regular file"), "{argument}: {said}");
+        }
+    }
+}
+
+/// What a shell prefix does to the run: a full disk is a limit on the size of files.
+#[cfg(unix)]
+fn run_after(folder: &Path, prefix: &str, arguments: &[&str]) -> Output {
+    let line = format!("{prefix} exec \"$0\" \"$@\"");
+    let program = env!("CARGO_BIN_EXE_policy-space");
+    Command::new("sh").current_dir(folder).args(["-c", &line, program]).args(arguments).output().unwrap()
+}
+
+#[cfg(unix)]
+#[test]
+fn a_full_disk_leaves_no_part_of_a_file() {
+    let folder = tempfile::tempdir().unwrap();
+    let full = "trap '' XFSZ; ulimit -f 0;";
+    let output = run_after(folder.path(), full, &["--headless", "--seconds", "0.1", "--report", "r.json"]);
+    let said = String::from_utf8_lossy(&output.stderr).into_owned();
+    assert_eq!(output.status.code(), Some(1), "{said}");
+    assert!(said.contains("cannot write r.json") && !said.contains("panicked"), "{said}");
+    if gpu().is_some() {
+        let line = ["--headless", "--seconds", "0.1", "--frames", ".", "--size", "160x120"];
+        let output = run_after(folder.path(), "trap '' XFSZ; ulimit -f 1;", &line);
+        let said = String::from_utf8_lossy(&output.stderr).into_owned();
+        assert!(said.contains("cannot write ./frame_00000.png"), "{said}");
+    }
+    let left: Vec<_> = std::fs::read_dir(folder.path()).unwrap().collect();
+    assert!(left.is_empty(), "{left:?}");
+}
+
+#[cfg(target_os = "linux")]
+#[test]
+fn a_full_standard_output_is_an_error_and_no_panic() {
+    let folder = tempfile::tempdir().unwrap();
+    let output = run_after(folder.path(), "exec >/dev/full;", &["--headless", "--seconds", "0.1"]);
+    let said = String::from_utf8_lossy(&output.stderr).into_owned();
+    assert_eq!(output.status.code(), Some(1), "{said}");
+    assert!(said.contains("cannot write to standard output") && !said.contains("panicked"), "{said}");
+}
+
+#[test]
+fn control_characters_of_a_file_do_not_reach_the_terminal() {
+    let folder = tempfile::tempdir().unwrap();
+    let name = "evil\u{1b}[2J.ron";
+    std::fs::write(
+        folder.path().join(name),
+        format!("(entries: [(at: 0.0, \u{1b}[31m{}: 1)])", "x".repeat(9000)),
+    )
+    .unwrap();
+    let output = run(folder.path(), &["--headless", "--script", name]);
+    let said = String::from_utf8_lossy(&output.stderr).into_owned();
+    assert_eq!(output.status.code(), Some(1), "{said}");
+    assert!(!said.contains('\u{1b}') && said.contains("evil\\u{1b}[2J") && said.len() < 3000, "{said}");
+}
+
+/// The driver's own messages are not the demo's: none is printed where there is no session.
+#[test]
+fn a_run_that_draws_prints_nothing_to_standard_error() {
+    if gpu().is_none() {
+        return;
+    }
+    let folder = tempfile::tempdir().unwrap();
+    let output = Command::new(env!("CARGO_BIN_EXE_policy-space"))
+        .current_dir(folder.path())
+        .args(["--headless", "--seconds", "0.1", "--frames", "out", "--size", "64x64"])
+        .env_remove("XDG_RUNTIME_DIR")
+        .env_remove("DISPLAY")
+        .env_remove("WAYLAND_DISPLAY")
+        .output()
+        .unwrap();
+    assert!(output.status.success());
+    assert_eq!(String::from_utf8_lossy(&output.stderr), "");
+}

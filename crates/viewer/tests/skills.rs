@@ -4,64 +4,16 @@ mod common;
 
 use std::sync::Arc;
 
-use common::simulation_of;
+use common::{SCORE, pack_with_skills, simulation_of};
 use egui::accesskit::Role;
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable as _;
-use physics_bridge::QVEL_LEN;
-use policy_core::{
-    CharacterPack, DISCRIMINATOR_INPUT_LEN, DiscriminatorEntry, EndCondition, Layer, Mlp, SkillEnd,
-    SkillEntry,
-};
-use viewer::app::{App, Layout, PanelKind, Side};
-use viewer::assets;
-
-/// What the made discriminator always says, and the logit that it comes from.
-const SCORE: f32 = 0.75;
-const LOGIT: f32 = 1.098_612_3;
-
-fn discriminator() -> Mlp {
-    let zeros = vec![0.0; DISCRIMINATOR_INPUT_LEN];
-    Mlp::from_layers(vec![Layer::from_input_major(DISCRIMINATOR_INPUT_LEN, 1, &zeros, &[LOGIT]).unwrap()])
-        .unwrap()
-}
-
-/// The pack that ships, with a skill that starts from walking and ends by a discriminator of `threshold`, and one to
-/// rise again that ends by time.
-fn pack(threshold: f32) -> CharacterPack {
-    let ships = CharacterPack::from_bytes(assets::HUMANOID_PACK).unwrap();
-    let (mut manifest, mut tensors) = (ships.manifest().clone(), ships.tensors().clone());
-    let end = EndCondition {
-        threshold,
-        hysteresis: 0.1,
-        ticks: 5,
-        minimum_seconds: 0.2,
-        limit_seconds: 1.5,
-        minimum_height: 0.0,
-    };
-    let skill = |name: &str, policy: &str, entry: &[&str], discriminator: Option<&str>| SkillEntry {
-        name: name.into(),
-        policy: policy.into(),
-        entry: entry.iter().map(|n| (*n).into()).collect(),
-        returns_to: "idle".into(),
-        discriminator: discriminator.map(Into::into),
-        end,
-    };
-    manifest.skills =
-        vec![skill("hop", "walk", &["walk"], Some("upright")), skill("rise", "idle", &[], None)];
-    manifest.recovery = Some("rise".into());
-    let layers = vec![DISCRIMINATOR_INPUT_LEN, 1];
-    manifest.discriminators = vec![DiscriminatorEntry { name: "upright".into(), layers }];
-    tensors.discriminators = vec![discriminator()];
-    // Whatever the policies that ship can do: only who lies has fallen.
-    manifest.policies.iter_mut().for_each(|policy| policy.fall_height = Some(0.3));
-    manifest.edges.iter_mut().for_each(|edge| edge.seconds = 0.2);
-    CharacterPack::from_parts(manifest, tensors).unwrap()
-}
+use policy_core::{SkillEnd, SkillId};
+use viewer::app::{App, PanelKind, PanelLayout, Side};
 
 fn harness(threshold: f32) -> Harness<'static, App> {
-    let layout = Layout { open: vec![(PanelKind::Skills, Side::Left)], ..Layout::default() };
-    let app = App::new(simulation_of(Arc::new(pack(threshold))), layout);
+    let layout = PanelLayout { open: vec![(PanelKind::Skills, Side::Left)], ..PanelLayout::default() };
+    let app = App::new(simulation_of(Arc::new(pack_with_skills(threshold))), layout);
     let mut harness = Harness::builder()
         .with_size(egui::vec2(900.0, 700.0))
         .build_ui_state(|ui, app: &mut App| app.ui(ui, 0.0), app);
@@ -103,14 +55,14 @@ fn a_skill_waits_runs_shows_its_score_and_is_recognised() {
     assert!(harness.query_by_label("This pack has no episodic skills.").is_none());
     assert!(harness.query_by_role(Role::ProgressIndicator).is_none());
     start_hop(&mut harness);
-    assert!(harness.query_by_label("not enough motion seen yet, 0 of 5 ticks").is_some());
-    until(&mut harness, |app| app.sim.player().report().skill.is_some_and(|s| s.counted == 3));
-    assert!(harness.query_by_label("score 0.75, 3 of 5 ticks").is_some());
+    assert!(harness.query_by_label("not enough motion seen yet, held 0.00 of 0.17 s").is_some());
+    until(&mut harness, |app| app.sim.player().report().skill.is_some_and(|s| s.held_seconds > 0.09));
+    assert!(harness.query_by_label("score 0.75, held 0.10 of 0.17 s").is_some());
     assert!(harness.query_by_label_contains("hop 0.").is_some(), "the bar says how long it runs");
     assert!((harness.state().plots.score.last().unwrap() - SCORE).abs() < 1e-4);
     until(&mut harness, |app| app.sim.player().report().skill.is_none());
     let report = *harness.state().sim.player().report();
-    assert_eq!(report.skill_ended, Some((0, SkillEnd::Recognised)));
+    assert_eq!(report.skill_ended, Some((SkillId::new(0), SkillEnd::Recognised)));
     let idle = harness.state().sim.pack().graph().node_named("idle");
     assert_eq!(report.position.as_node(), idle);
     assert!(harness.query_by_role(Role::ProgressIndicator).is_none());
@@ -122,29 +74,39 @@ fn a_skill_that_is_not_recognised_ends_by_time() {
     let mut harness = harness(0.9);
     start_hop(&mut harness);
     until(&mut harness, |app| app.sim.player().report().skill.is_some_and(|s| s.score.is_some()));
-    assert!(harness.query_by_label("score 0.75, 0 of 5 ticks").is_some());
+    assert!(harness.query_by_label("score 0.75, held 0.00 of 0.17 s").is_some());
     until(&mut harness, |app| app.sim.player().report().skill_ended.is_some());
-    assert_eq!(harness.state().sim.player().report().skill_ended, Some((0, SkillEnd::TimeLimit)));
+    assert_eq!(
+        harness.state().sim.player().report().skill_ended,
+        Some((SkillId::new(0), SkillEnd::TimeLimit))
+    );
 }
 
 #[test]
 fn who_lies_starts_the_recovery_and_the_panel_says_so() {
     let mut harness = harness(0.7);
     let sim = &mut harness.state_mut().sim;
-    let mut qpos = sim.character(0).pose().qpos;
+    let physics_bridge::Pose { mut qpos, mut qvel } = sim.character(0).pose();
+    qvel.fill(0.0);
     // On its back.
     qpos[2] = 0.15;
     let half = std::f64::consts::FRAC_1_SQRT_2;
     qpos[3..7].copy_from_slice(&[half, 0.0, -half, 0.0]);
-    sim.character_mut(0).set_pose(&qpos, &[0.0; QVEL_LEN]).unwrap();
+    sim.character_mut(0).set_pose(&qpos, &qvel).unwrap();
     until(&mut harness, |app| app.sim.player().report().skill.is_some());
     let report = *harness.state().sim.player().report();
-    assert_eq!((report.skill.map(|s| s.skill), report.skill_started), (Some(1), Some(1)));
+    assert_eq!(
+        (report.skill.map(|s| s.skill), report.skill_started),
+        (Some(SkillId::new(1)), Some(SkillId::new(1)))
+    );
     assert!(harness.query_by_label("ends by time").is_some());
     assert!(harness.query_by_label_contains("rise 0.").is_some());
     assert!(harness.state().sim.player().is_down());
     until(&mut harness, |app| app.sim.player().report().skill_ended.is_some());
-    assert_eq!(harness.state().sim.player().report().skill_ended, Some((1, SkillEnd::TimeLimit)));
+    assert_eq!(
+        harness.state().sim.player().report().skill_ended,
+        Some((SkillId::new(1), SkillEnd::TimeLimit))
+    );
     // Who can try to rise by itself is not stood up.
     assert_eq!(harness.state().sim.totals().stood_up, 0);
 }

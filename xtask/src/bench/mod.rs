@@ -14,19 +14,20 @@ use serde_json::{Map, Value};
 use crate::setup::{self, Purpose};
 use crate::workspace::{Workspace, output_of};
 
-/// What can be said about benchmarks.
+/// Arguments of `cargo xtask bench`.
 #[derive(Debug, Args)]
 pub struct BenchArgs {
     #[command(subcommand)]
     subject: Subject,
 }
 
-/// What can be measured.
+/// The subjects of benchmarks.
 #[derive(Debug, Subcommand)]
 enum Subject {
-    /// Nanoseconds to evaluate a policy, blend and tick, beside four inference libraries on the same network.
+    /// Nanoseconds to evaluate a policy, blend, tick and save, beside four inference libraries on the same network.
     Policy {
-        /// Print one JSON object: evaluate_ns, fused_ns, cached_ns, batched_ns_per_character, tick_ns, peers_ns.
+        /// Print one JSON object: evaluate_ns, fused_ns, cached_ns, batched_ns_per_character, tick_ns, pack_load_ms,
+        /// pack_bytes, save_ns, restore_ns, save_bytes_ns, restore_bytes_ns, peers_ns.
         #[arg(long)]
         json: bool,
         /// Leave the other libraries out; building them the first time takes many minutes.
@@ -78,7 +79,7 @@ pub fn run(workspace: &Workspace, arguments: &BenchArgs) -> Result<()> {
     Ok(())
 }
 
-/// Has the demo measure itself and checks that it hands back what was promised.
+/// Runs a benchmark of the demo and checks that it returns the promised figures.
 fn demo_bench(workspace: &Workspace, verb: &str, promised: &[&str]) -> Result<Map<String, Value>> {
     let arguments = ["run", "--release", "-p", "viewer", "--bin", "policy-space", "--", verb, "--json"];
     let text = output_of(workspace.cargo().args(arguments))?;

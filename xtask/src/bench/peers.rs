@@ -1,5 +1,5 @@
-//! How `benches/peers` is built and run. It is a workspace of its own and has two halves, one feature each, so that
-//! nobody waits for libraries that are not measured.
+//! Builds and runs `benches/peers`. It is a workspace of its own with one feature for each half, so that only the
+//! libraries that are measured get compiled.
 
 use std::process::{Command, Stdio};
 

@@ -1,8 +1,8 @@
-//! Who may import whom, checked against what `cargo metadata` says.
+//! Which crate may import which, checked against `cargo metadata`.
 //!
 //! The rules are those of `ARCHITECTURE.md`. They are data: a new crate needs a line in [`RULES`], and a
-//! dependency that only one crate may have needs one in [`OWNED`]. `deny.toml` says the second half again for
-//! those who run cargo-deny; this check needs nothing installed and sees development dependencies too.
+//! dependency that only one crate may have needs one in [`OWNED`]. `deny.toml` repeats the second half for
+//! cargo-deny. This check needs nothing installed and sees development dependencies too.
 
 use std::collections::{HashMap, HashSet};
 

@@ -1,24 +1,19 @@
 //! Every check that CI runs, quick ones first. All of them run, whatever fails; a table says how each ended.
 
-pub mod deny;
+mod definitions;
+mod deny;
 pub mod imports;
 mod steps;
+pub mod words;
 
 use std::process::ExitCode;
 use std::time::{Duration, Instant};
 
 use anyhow::Result;
 
-use crate::workspace::Workspace;
+pub use steps::{ALL, DENY};
 
-/// How the checks are to be run.
-#[derive(Debug, Clone, Copy, Default)]
-pub struct Options {
-    /// A check that cannot run here counts as failed.
-    pub strict: bool,
-    /// Install cargo-deny when it is missing.
-    pub install_deny: bool,
-}
+use crate::workspace::Workspace;
 
 /// How a check ended that could be started.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -30,9 +25,10 @@ pub enum Verdict {
 }
 
 /// One check: a name and what it does.
-struct Step {
+#[derive(Clone, Copy)]
+pub struct Step {
     name: &'static str,
-    run: fn(&Workspace, Options) -> Result<Verdict>,
+    run: fn(&Workspace) -> Result<Verdict>,
 }
 
 /// How one check ended, and how long it took.
@@ -52,21 +48,17 @@ impl Outcome {
     }
 }
 
-/// Runs all checks; the exit code says whether one failed.
-pub fn run(workspace: &Workspace, options: Options) -> ExitCode {
-    let outcomes: Vec<Outcome> = steps::STEPS.iter().map(|step| run_step(workspace, step, options)).collect();
-    eprint!("{}", table(&outcomes, options.strict));
-    if outcomes.iter().any(|outcome| outcome.failed(options.strict)) {
-        ExitCode::FAILURE
-    } else {
-        ExitCode::SUCCESS
-    }
+/// Runs checks; the exit code says whether one failed. With `strict` a skipped check counts as failed.
+pub fn run(workspace: &Workspace, steps: &[Step], strict: bool) -> ExitCode {
+    let outcomes: Vec<Outcome> = steps.iter().map(|step| run_step(workspace, step)).collect();
+    eprint!("{}", table(&outcomes, strict));
+    if outcomes.iter().any(|outcome| outcome.failed(strict)) { ExitCode::FAILURE } else { ExitCode::SUCCESS }
 }
 
-fn run_step(workspace: &Workspace, step: &Step, options: Options) -> Outcome {
+fn run_step(workspace: &Workspace, step: &Step) -> Outcome {
     eprintln!("\nxtask: {}", step.name);
     let start = Instant::now();
-    let result = (step.run)(workspace, options).map_err(|error| format!("{error:#}"));
+    let result = (step.run)(workspace).map_err(|error| format!("{error:#}"));
     match &result {
         Ok(Verdict::Passed) => {}
         Ok(Verdict::Skipped(reason)) => eprintln!("xtask: SKIPPED {}: {reason}", step.name),
@@ -89,7 +81,12 @@ fn table(outcomes: &[Outcome], strict: bool) -> String {
     }
     let failed = outcomes.iter().filter(|outcome| outcome.failed(strict)).count();
     let total: Duration = outcomes.iter().map(|outcome| outcome.elapsed).sum();
-    let verdict = if failed == 0 { "all checks passed".to_owned() } else { format!("{failed} failed") };
+    let skipped = outcomes.iter().filter(|outcome| matches!(outcome.result, Ok(Verdict::Skipped(_)))).count();
+    let verdict = match (failed, skipped) {
+        (0, 0) => "all checks passed".to_owned(),
+        (0, skipped) => format!("{skipped} skipped, all others passed"),
+        (failed, _) => format!("{failed} failed"),
+    };
     text.push_str(&format!("  {verdict}, {:.0} s\n", total.as_secs_f64()));
     text
 }
@@ -123,5 +120,7 @@ mod tests {
         assert!(text.contains("skipped") && text.contains("not installed"));
         assert!(text.contains("FAILED") && text.contains("`cargo test` failed\n"));
         assert!(text.ends_with("1 failed, 4 s\n"), "{text}");
+        assert!(table(&outcomes[..2], false).ends_with("1 skipped, all others passed, 3 s\n"));
+        assert!(table(&outcomes[..1], false).ends_with("all checks passed, 2 s\n"));
     }
 }

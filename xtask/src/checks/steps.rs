@@ -1,30 +1,38 @@
-//! The checks themselves: which command each one is.
+//! The checks: the command of each.
 
 use std::path::Path;
 use std::process::Command;
 
 use anyhow::Result;
 
-use super::{Options, Step, Verdict, deny, imports};
+use super::{Step, Verdict, deny, imports, words};
 use crate::workspace::{Workspace, answers, output_of, run};
 
+/// The checks that cargo-deny does.
+pub const DENY: &[Step] = &[RULES, ADVISORIES];
+
+const RULES: Step = Step { name: "licences, bans, sources", run: deny::rules };
+const ADVISORIES: Step = Step { name: "security advisories", run: deny::advisories };
+
 /// All checks in the order in which they run: quick ones first, the tests last, so that a run ends with theirs.
-pub const STEPS: &[Step] = &[
+pub const ALL: &[Step] = &[
     Step { name: "formatting", run: formatting },
     Step {
-        name: "who imports whom",
-        run: |workspace, _| imports::check(workspace).map(|()| Verdict::Passed),
+        name: "imports between crates",
+        run: |workspace| imports::check(workspace).map(|()| Verdict::Passed),
     },
-    Step { name: "cargo-deny", run: |workspace, options| deny::step(workspace, options.install_deny) },
-    Step { name: "no_std: wasm32", run: |workspace, _| no_std(workspace, "wasm32-unknown-unknown") },
-    Step { name: "no_std: thumbv7em", run: |workspace, _| no_std(workspace, "thumbv7em-none-eabihf") },
+    Step { name: "names and lengths", run: |workspace| words::check(workspace).map(|()| Verdict::Passed) },
+    RULES,
+    ADVISORIES,
+    Step { name: "no_std: wasm32", run: |workspace| no_std(workspace, "wasm32-unknown-unknown") },
+    Step { name: "no_std: thumbv7em", run: |workspace| no_std(workspace, "thumbv7em-none-eabihf") },
     Step { name: "bits without vector units", run: plain_bits },
     Step { name: "clippy", run: clippy },
     Step { name: "documentation", run: documentation },
     Step { name: "tests", run: tests },
 ];
 
-fn formatting(workspace: &Workspace, _: Options) -> Result<Verdict> {
+fn formatting(workspace: &Workspace) -> Result<Verdict> {
     if !has_component(workspace, "fmt", "rustfmt") {
         return Ok(missing_component("rustfmt"));
     }
@@ -32,7 +40,7 @@ fn formatting(workspace: &Workspace, _: Options) -> Result<Verdict> {
     Ok(Verdict::Passed)
 }
 
-fn clippy(workspace: &Workspace, _: Options) -> Result<Verdict> {
+fn clippy(workspace: &Workspace) -> Result<Verdict> {
     if !has_component(workspace, "clippy", "clippy") {
         return Ok(missing_component("clippy"));
     }
@@ -40,12 +48,12 @@ fn clippy(workspace: &Workspace, _: Options) -> Result<Verdict> {
     Ok(Verdict::Passed)
 }
 
-fn documentation(workspace: &Workspace, _: Options) -> Result<Verdict> {
+fn documentation(workspace: &Workspace) -> Result<Verdict> {
     run(workspace.cargo().args(["doc", "--workspace", "--no-deps"]).env("RUSTDOCFLAGS", "-D warnings"))?;
     Ok(Verdict::Passed)
 }
 
-fn tests(workspace: &Workspace, _: Options) -> Result<Verdict> {
+fn tests(workspace: &Workspace) -> Result<Verdict> {
     run(workspace.cargo().args(["test", "--workspace", "--no-fail-fast"]))?;
     Ok(Verdict::Passed)
 }
@@ -60,8 +68,8 @@ fn no_std(workspace: &Workspace, target: &str) -> Result<Verdict> {
     Ok(Verdict::Passed)
 }
 
-/// Runs the blends' tests, the pinned bits among them, on the plain code that no vector unit was detected for.
-fn plain_bits(workspace: &Workspace, _: Options) -> Result<Verdict> {
+/// Runs the tests of blends, with their pinned bits, on the code for processors without vector units.
+fn plain_bits(workspace: &Workspace) -> Result<Verdict> {
     run(workspace.cargo().args(["test", "-p", "policy-core", "--no-default-features", "--test", "blend"]))?;
     Ok(Verdict::Passed)
 }

@@ -1,8 +1,7 @@
 //! Brings a pinned wheel to this machine: through pip, or from a file that the user names.
 //!
-//! A wheel counts as here only under its final name, which it gets after its hash was checked; what an
-//! interrupted download leaves lies in a scratch folder that the next run removes. Refuses any file whose
-//! hash is not the pinned one.
+//! A wheel gets its final name after its hash was checked. An interrupted download leaves a scratch folder, which
+//! the next run removes. Refuses any file whose hash is not the pinned one.
 
 use std::ffi::OsString;
 use std::fs::{self, File};
@@ -91,8 +90,8 @@ pub fn remove_folder(path: &Path) -> Result<()> {
 
 /// A Python 3 on this machine that has pip, as the words that start it.
 ///
-/// The first of `python3`, `python` and `py -3` that answers, then the system's own one: a version manager may
-/// put a Python without pip first in the search path.
+/// Tries `python3`, `python` and `py -3`, then the system's own one: a version manager may put a Python without pip
+/// first in the search path.
 pub fn python_with_pip() -> Option<Vec<OsString>> {
     let candidates: [&[&str]; 4] = [&["python3"], &["python"], &["py", "-3"], &["/usr/bin/python3"]];
     candidates
@@ -170,7 +169,7 @@ fn only_wheel_in(folder: &Path) -> Result<PathBuf> {
     Ok(wheels.remove(0))
 }
 
-/// What matters of pip's words: its errors, or its last lines when it names none. Indented.
+/// The errors in pip's output, or its last lines when it names none. Indented.
 fn essence(text: &str) -> String {
     let errors: Vec<&str> = text.lines().filter(|line| line.starts_with("ERROR")).collect();
     let lines: Vec<&str> = text.lines().filter(|line| !line.trim().is_empty()).collect();

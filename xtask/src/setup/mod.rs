@@ -1,7 +1,7 @@
-//! Makes a fresh machine ready: system packages and libmujoco. Quick and silent when all is there.
+//! Makes a fresh machine ready: system packages and libmujoco. Quick and silent when nothing is missing.
 //!
-//! The demo, the tests and the benchmarks run it by themselves. Tried on Debian 12 (x86_64); the paths for
-//! arm64, macOS and Windows are written and their wheels pinned, but have not been run.
+//! The demo, the tests and the benchmarks run it first. Tried on Debian 12 (x86_64). The code for arm64, macOS and
+//! Windows is written and their wheels are pinned, but it has not been run.
 
 mod download;
 #[cfg(windows)]
@@ -14,6 +14,7 @@ use std::path::{Path, PathBuf};
 
 use anyhow::{Context, Result};
 
+pub use download::remove_folder;
 pub use packages::Purpose;
 
 use self::library::Installation;
@@ -35,7 +36,7 @@ pub fn prepare(workspace: &Workspace, purpose: Purpose, install: bool) -> Result
     Installation::new(&pins::MUJOCO, workspace.third_party())?.ensure().context("set-up of libmujoco")
 }
 
-/// Fetches ONNX Runtime, which only the benchmark of peers uses, and hands back its library file.
+/// Fetches ONNX Runtime, which only the benchmark of peers uses, and returns its library file.
 ///
 /// # Errors
 /// When it is not there and cannot be fetched.

@@ -55,8 +55,13 @@ impl Network {
     /// When policy-core does not take the network, which it is made for.
     pub fn expected(&self, observation: &[f32]) -> Vec<f32> {
         let layers = self.layers.iter().map(|layer| {
-            policy_core::Layer::from_input_major(layer.inputs, layer.outputs, &layer.weight, &layer.bias)
-                .expect("made to shape")
+            policy_core::training::Layer::from_input_major(
+                layer.inputs,
+                layer.outputs,
+                &layer.weight,
+                &layer.bias,
+            )
+            .expect("made to shape")
         });
         let mlp = Mlp::from_layers(layers.collect()).expect("made to shape");
         let mut scratch = MlpScratch::for_mlp(&mlp);

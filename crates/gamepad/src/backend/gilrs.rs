@@ -1,4 +1,4 @@
-//! Pads through gilrs, for those that HID does not reach: Xbox pads on USB (xpad, XInput), with SDL's mappings.
+//! Pads through gilrs, with SDL's mappings: those without HID, such as Xbox pads on USB (xpad, XInput).
 
 use std::collections::BTreeMap;
 use std::time::Instant;
@@ -18,12 +18,12 @@ pub struct GilrsBackend {
 }
 
 impl GilrsBackend {
-    /// Starts to look for pads.
+    /// Starts the search for pads.
     ///
     /// # Errors
     /// [`BackendError::Gilrs`] when gilrs can't start.
     pub fn start() -> Result<Self, BackendError> {
-        // Dead zones are this crate's: without gilrs' filters the values are raw.
+        // This crate applies its own dead zones, so gilrs' filters are off and values are raw.
         let gilrs = GilrsBuilder::new()
             .with_default_filters(false)
             .build()
@@ -78,7 +78,7 @@ impl PadBackend for GilrsBackend {
         }
     }
 
-    /// gilrs has its own way of rumbling, which needs no reports; not used.
+    /// Always false: gilrs' rumble needs no reports and is not used.
     fn send(&mut self, _key: DeviceKey, _report: &[u8]) -> bool {
         false
     }

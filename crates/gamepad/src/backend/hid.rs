@@ -1,4 +1,4 @@
-//! Pads through hidapi: one thread looks for devices once a second, one thread reads each open device.
+//! Pads through hidapi. One thread searches for devices once a second; each open device has a reader thread.
 
 mod reader;
 
@@ -20,7 +20,7 @@ const SCAN_INTERVAL: Duration = Duration::from_secs(1);
 const STOP_INTERVAL: Duration = Duration::from_millis(20);
 
 type Timed = (Instant, DeviceEvent);
-/// Where to send the output reports of each open device.
+/// Channels for the output reports of open devices.
 type Outputs = Arc<Mutex<BTreeMap<DeviceKey, Sender<Box<[u8]>>>>>;
 
 /// Reads pads through hidapi until dropped.
@@ -33,7 +33,7 @@ pub struct HidBackend {
 }
 
 impl HidBackend {
-    /// Starts to look for pads.
+    /// Starts the search for pads.
     ///
     /// # Errors
     /// [`BackendError`] when hidapi or the thread can't start.
@@ -69,13 +69,13 @@ impl Drop for HidBackend {
     fn drop(&mut self) {
         self.stop.store(true, Ordering::Relaxed);
         if let Some(scanner) = self.scanner.take() {
-            // A panic there has been printed; there is nothing left to undo.
+            // A panic there was printed already; nothing remains to be undone.
             let _ = scanner.join();
         }
     }
 }
 
-/// A device that is plugged in: being read, or not readable.
+/// A connected device: being read, or not readable.
 enum Known {
     Read(JoinHandle<()>),
     Unusable(DeviceKey),
@@ -106,7 +106,7 @@ impl Scanner {
     }
 
     fn scan(&mut self) {
-        // A failed look finds nothing new and closes nothing: the readers notice by themselves what is gone.
+        // A failed search finds no device and closes none: readers detect a disconnect by themselves.
         if self.api.refresh_devices().is_err() {
             return;
         }
@@ -121,7 +121,7 @@ impl Scanner {
         }
     }
 
-    /// Drops what was unplugged, and readers that ended, so that the device is opened again if it is back.
+    /// Drops unplugged devices and finished readers, so that a device is opened again when it returns.
     fn forget(&mut self, present: &HashSet<&CString>) {
         let events = &self.events;
         self.open.retain(|path, known| match known {
@@ -171,7 +171,7 @@ impl Scanner {
     }
 }
 
-/// A known pad, or anything that calls itself joystick, game pad or multi-axis controller.
+/// True for a known pad, and for any device that declares itself a joystick, game pad or multi-axis controller.
 fn is_pad(device: &hidapi::DeviceInfo) -> bool {
     let usage = (device.usage_page(), device.usage());
     let says_pad = matches!(usage, (0x01, 0x04 | 0x05 | 0x08));
@@ -201,7 +201,7 @@ fn described(device: &hidapi::DeviceInfo) -> (CString, DeviceInfo) {
     (device.path().to_owned(), info)
 }
 
-/// hidapi gives a sentence; opening the file once more tells whether it is about permission.
+/// hidapi returns text only, so the file is opened again to detect missing permission.
 fn open_problem(device: &DeviceInfo, error: &hidapi::HidError) -> Problem {
     let denied = cfg!(target_os = "linux")
         && std::fs::OpenOptions::new()

@@ -1,4 +1,4 @@
-//! `pad`: what is connected and what is wrong, udev rules, recording and playing of pads.
+//! `pad`: lists pads and their problems, prints udev rules, records and plays pads.
 
 use std::fs::File;
 use std::io::{BufWriter, Write as _};
@@ -13,10 +13,13 @@ use gamepad::pads::PadOutput;
 use gamepad::recording::{Recording, VirtualPad};
 use gamepad::{Gamepads, udev};
 
-/// Time between two polls: a control tick.
+/// Time between two polls, about one control tick.
 const TICK: Duration = Duration::from_millis(33);
 
-/// Gamepads: what is connected, what is wrong, recording and playing.
+/// States a second that `pad play` prints.
+const PLAY_HZ: f64 = 30.0;
+
+/// Lists gamepads and their problems, records and plays them.
 #[derive(Debug, Parser)]
 #[command(name = "pad", arg_required_else_help = true)]
 struct Cli {
@@ -26,17 +29,17 @@ struct Cli {
 
 #[derive(Debug, Subcommand)]
 enum Verb {
-    /// List connected pads, their back ends and live values, what is wrong and what to do.
+    /// List connected pads, their back ends, live values, problems and remedies.
     ///
-    /// Ends with 0 when a pad works and nothing is wrong, else with 1.
+    /// Exits with 0 when a pad works and there is no problem, else with 1.
     Doctor(DoctorArgs),
-    /// Print the udev rules for all known pads, ready to install.
+    /// Print the udev rules for all known pads.
     Udev,
-    /// Record the pad that is used first.
+    /// Record the first pad on which a button is pressed.
     Record {
-        /// Where to write the recording.
+        /// File to write.
         file: PathBuf,
-        /// How long to record.
+        /// Seconds to record.
         #[arg(long, default_value_t = 60.0)]
         seconds: f64,
     },
@@ -45,19 +48,19 @@ enum Verb {
         /// The recording.
         file: PathBuf,
     },
-    /// Make the active pad rumble and light up for a second.
+    /// Turn on rumble and light of the active pad for a second.
     Rumble,
 }
 
 #[derive(Debug, Args)]
 struct DoctorArgs {
-    /// How long to look and show live values.
+    /// Seconds to search and show live values.
     #[arg(long, default_value_t = 3.0)]
     seconds: f64,
 }
 
 fn main() -> Result<ExitCode> {
-    // Whoever reads no further, as `head`, ends the program without a word.
+    // Exits quietly on SIGPIPE, as when the output is piped to `head`.
     sigpipe::reset();
     match Cli::parse().verb {
         Verb::Doctor(DoctorArgs { seconds }) => run_doctor(seconds),
@@ -80,13 +83,14 @@ fn open() -> (Gamepads, Vec<String>) {
     (gamepads, errors.iter().map(ToString::to_string).collect())
 }
 
-/// Polls for a time and calls `each` after every poll, until it says that it is done.
+/// Polls for a time and calls `each` after every poll, until it returns true.
 fn watch(
     gamepads: &mut Gamepads,
     seconds: f64,
     mut each: impl FnMut(&mut Gamepads) -> Result<bool>,
 ) -> Result<()> {
-    let length = Duration::try_from_secs_f64(seconds).context("--seconds: expected a length of time")?;
+    let length =
+        Duration::try_from_secs_f64(seconds).context("--seconds: expected a duration of at least 0")?;
     let start = Instant::now();
     while start.elapsed() < length {
         gamepads.poll();
@@ -100,7 +104,7 @@ fn watch(
 
 fn run_doctor(seconds: f64) -> Result<ExitCode> {
     let (mut gamepads, errors) = open();
-    eprintln!("Looking for {seconds} s. Put pads down first, then press buttons and move sticks.");
+    eprintln!("Searching for {seconds} s. Put all pads down first, then press buttons and move sticks.");
     watch(&mut gamepads, seconds, |gamepads| {
         if let Some(pad) = gamepads.active() {
             eprint!("\r{:<118}", doctor::values(&gamepads.report_of(pad).state));
@@ -111,7 +115,7 @@ fn run_doctor(seconds: f64) -> Result<ExitCode> {
     let (text, sound) = doctor::report(&gamepads, &SystemFacts::of_this_system(errors));
     print!("{text}");
     if gamepads.problems().iter().any(|(_, problem)| doctor::needs_rules(problem)) {
-        println!("The rules for all known pads: pad udev | sudo tee {}", udev::RULES_PATH);
+        println!("To install the rules for all known pads: pad udev | sudo tee {}", udev::RULES_PATH);
     }
     Ok(if sound { ExitCode::SUCCESS } else { ExitCode::FAILURE })
 }
@@ -119,23 +123,26 @@ fn run_doctor(seconds: f64) -> Result<ExitCode> {
 fn record(file: &Path, seconds: f64) -> Result<ExitCode> {
     let (mut gamepads, errors) = open();
     let mut key = None;
-    eprintln!("Press a button on the pad to record.");
+    eprintln!("Press a button on the pad to record it.");
     watch(&mut gamepads, 30.0, |gamepads| {
         let active = gamepads.active().filter(|pad| pad.session.counts().0 > 0);
         key = active.map(|pad| (pad.device.key, pad.device.name.clone()));
         Ok(key.is_some())
     })?;
     let Some((key, name)) = key else {
-        bail!("no pad reported anything for 30 s; `pad doctor` says why ({} back ends failed)", errors.len());
+        bail!(
+            "expected a report of a pad within 30 s, found none ({} back ends failed); `pad doctor` lists problems",
+            errors.len()
+        );
     };
-    let out = File::create(file).with_context(|| format!("{}: cannot be written", file.display()))?;
+    let out = File::create(file).with_context(|| format!("cannot write {}", file.display()))?;
     gamepads.record(key, Box::new(BufWriter::new(out)))?;
     eprintln!("Recording {name} for {seconds} s to {}.", file.display());
     watch(&mut gamepads, seconds, |gamepads| Ok(gamepads.pad_mut(key).is_none()))?;
     if let Some(pad) = gamepads.pad_mut(key) {
-        pad.stop_recording().with_context(|| format!("{}: cannot be written", file.display()))?;
+        pad.stop_recording().with_context(|| format!("cannot write {}", file.display()))?;
     } else {
-        eprintln!("The pad was pulled out; the recording ends there.");
+        eprintln!("The pad was disconnected; the recording ends there.");
     }
     Ok(ExitCode::SUCCESS)
 }
@@ -146,7 +153,7 @@ fn play(file: &Path) -> Result<ExitCode> {
     let mut pad = VirtualPad::new(recording).with_context(|| format!("{}", file.display()))?;
     let mut out = std::io::stdout().lock();
     for tick in 0.. {
-        let time_secs = f64::from(tick) / 30.0;
+        let time_secs = f64::from(tick) / PLAY_HZ;
         let report = pad.report_at(time_secs);
         writeln!(out, "{time_secs:8.3}  {}", doctor::values(&report.state))?;
         if time_secs >= duration {
@@ -154,7 +161,7 @@ fn play(file: &Path) -> Result<ExitCode> {
         }
     }
     let (accepted, refused) = pad.counts();
-    eprintln!("{accepted} reports read, {refused} refused.");
+    eprintln!("{accepted} reports accepted, {refused} refused.");
     Ok(ExitCode::SUCCESS)
 }
 
@@ -162,11 +169,11 @@ fn rumble() -> Result<ExitCode> {
     let (mut gamepads, _) = open();
     watch(&mut gamepads, 2.0, |gamepads| Ok(gamepads.active().is_some()))?;
     let Some(key) = gamepads.active().map(|pad| pad.device.key) else {
-        bail!("no pad found; try `pad doctor`")
+        bail!("expected a pad, found none; `pad doctor` lists problems")
     };
     let strong = PadOutput { low_rumble: 0.6, high_rumble: 0.6, light: [0, 120, 255] };
     if !gamepads.set_output(key, &strong) {
-        bail!("this pad takes no rumble through this back end");
+        bail!("this pad does not support rumble through this back end");
     }
     watch(&mut gamepads, 1.0, |_| Ok(false))?;
     gamepads.set_output(key, &PadOutput { light: strong.light, ..PadOutput::default() });

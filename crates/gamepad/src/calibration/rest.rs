@@ -1,19 +1,19 @@
-//! Measuring where a pad rests.
+//! Measures the rest position of a pad's controls.
 
 use super::{Calibration, DeadZones, Rest, Zone};
 use crate::GamepadState;
 
-/// Furthest that a stick of a usable pad rests from its centre.
+/// Greatest rest offset of a usable stick.
 const MOST_DRIFT: f32 = 0.3;
-/// Furthest that a trigger of a usable pad rests from released.
+/// Greatest rest offset of a usable trigger.
 const MOST_PULL: f32 = 0.3;
-/// Most that a control at rest moves to and fro.
+/// Greatest movement of a control at rest.
 const MOST_SPREAD: f32 = 0.15;
-/// The dead zone reaches this many times as far as the control moved while measured, plus a little.
+/// Factor from the movement at rest to the dead zone; a small margin is added.
 const SPREAD_MARGIN: f32 = 1.5;
 const LITTLE: f32 = 0.02;
 
-/// Watches a pad that lies at rest and finds where its controls rest and how much they move there.
+/// Measures the rest positions of a pad's controls and how much they move at rest.
 #[derive(Clone, Debug)]
 pub struct RestCalibrator {
     samples: u32,
@@ -21,18 +21,18 @@ pub struct RestCalibrator {
     high: [f32; 6],
 }
 
-/// Why a measurement was refused: somebody held the pad, or it is broken.
+/// Why a measurement was refused: the pad was held, or it is defective.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum NotAtRest {
-    /// Not enough reports to tell.
+    /// There were too few reports.
     #[error("expected at least {} reports, found {found}", RestCalibrator::LEAST_SAMPLES)]
     TooFew {
         /// Reports seen.
         found: u32,
     },
-    /// A control was off its rest position or moved.
-    #[error("{control}: expected it at rest, found it between {low} and {high}")]
+    /// A control moved or was away from its rest position.
+    #[error("{control}: expected a control at rest, found values from {low} to {high}")]
     Moved {
         /// Name of the control.
         control: &'static str,
@@ -53,7 +53,7 @@ impl RestCalibrator {
     /// Reports needed for a result.
     pub const LEAST_SAMPLES: u32 = 20;
 
-    /// Takes one raw state.
+    /// Adds one raw state.
     pub fn observe(&mut self, raw: &GamepadState) {
         let values = [
             raw.left_stick[0],
@@ -70,7 +70,7 @@ impl RestCalibrator {
         self.samples = self.samples.saturating_add(1);
     }
 
-    /// The rest positions, and `zones` widened where a control moved more than they forgive.
+    /// The rest positions, and `zones` widened where a control moves more than they allow.
     ///
     /// # Errors
     /// [`NotAtRest`] when there were too few reports or a control was held.

@@ -1,4 +1,4 @@
-//! The items of a report descriptor, one after the other.
+//! Iterates over the items of a report descriptor.
 
 use super::DescriptorError;
 
@@ -27,7 +27,7 @@ impl Item {
     }
 }
 
-/// Iterates over the short items; long items are passed over.
+/// Iterates over the short items; skips long items.
 pub(super) struct Items<'a> {
     bytes: &'a [u8],
     offset: usize,

@@ -1,17 +1,17 @@
-//! The item state table: global and local items, and what an input item makes of them.
+//! The item state table: global and local items, and the fields that an input item adds.
 
 use super::items::Item;
 use super::{Descriptor, DescriptorError, Field, MAX_FIELDS, MAX_REPORT_BITS, Usage};
 
 const MAX_DEPTH: usize = 32;
-/// Usages kept for one main item; a device has no use for more.
+/// Most usages kept for one main item.
 const MAX_USAGES: usize = 256;
 
 #[derive(Clone, Copy, Default)]
 struct Globals {
     page: u16,
     logical_min: i32,
-    /// Signed and unsigned reading; which one counts depends on the sign of the minimum.
+    /// Signed and unsigned reading; the sign of the minimum decides between them.
     logical_max: (i32, u32),
     report_bits: u32,
     report_count: u32,
@@ -26,7 +26,7 @@ struct Locals {
 }
 
 impl Locals {
-    /// The usage of the `index`-th value; the last one goes on for the rest.
+    /// The usage of the `index`-th value; the last usage applies to all further values.
     fn usage(&self, mut index: u32) -> Usage {
         for &(first, last) in &self.usages {
             let count = u32::from(last.number() - first.number()) + 1;
@@ -160,7 +160,7 @@ impl State {
         Ok(())
     }
 
-    /// Reserves `bits` in the current report; where they start, or `None` past the limit.
+    /// Reserves `bits` in the current report. Returns their first bit, or `None` past the limit.
     fn advance(&mut self, bits: u64) -> Option<u32> {
         let id = self.globals.report_id;
         let index = self.report_bits.iter().position(|report| report.0 == id).unwrap_or_else(|| {
@@ -174,7 +174,7 @@ impl State {
     }
 }
 
-/// Many descriptors write the greatest value of an unsigned range in as few bytes as fit it unsigned.
+/// Many descriptors store the greatest value of an unsigned range in as few bytes as an unsigned number needs.
 fn logical_range(globals: &Globals) -> (i32, i32) {
     let (signed, unsigned) = globals.logical_max;
     let max = if globals.logical_min < 0 || signed >= globals.logical_min {

@@ -1,11 +1,11 @@
-//! What the system itself says about pads, apart from the back ends.
+//! Facts about pads from the system itself, independent of the back ends.
 
 use std::path::Path;
 
 /// What is known about the system.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct SystemFacts {
-    /// It is Linux, so the facts below are meaningful.
+    /// The system is Linux. The facts below apply to Linux only.
     pub is_linux: bool,
     /// This build has the hidapi back end.
     pub has_hidapi: bool,
@@ -15,7 +15,7 @@ pub struct SystemFacts {
     pub backend_errors: Vec<String>,
     /// Number of HID devices, readable or not.
     pub hidraw_nodes: usize,
-    /// Pads that the kernel's own drivers offer.
+    /// Pads that the kernel's own drivers provide.
     pub event_pads: Vec<EventPad>,
 }
 
@@ -33,7 +33,7 @@ pub struct EventPad {
 }
 
 impl SystemFacts {
-    /// Looks at this system.
+    /// Facts about this system.
     #[must_use]
     pub fn of_this_system(backend_errors: Vec<String>) -> Self {
         let nodes = std::fs::read_dir("/sys/class/hidraw").map_or(0, Iterator::count);
@@ -59,7 +59,7 @@ impl SystemFacts {
 }
 
 impl EventPad {
-    /// The pads in the text of `/proc/bus/input/devices`: blocks of lines, those with a joystick handler.
+    /// The pads in the text of `/proc/bus/input/devices`: all blocks with a joystick handler.
     #[must_use]
     pub fn list(devices: &str) -> Vec<Self> {
         devices.split("\n\n").filter_map(Self::of_block).collect()

@@ -7,7 +7,7 @@ use crate::pads::{MAX_OUTPUT_LEN, Model, OutputEncoder, PadOutput};
 use crate::recording::{PadEvent, RecordedPad, Recorder, RecordingError};
 use crate::{GamepadState, PadSession, ReportError};
 
-/// Reports that set the parser up and must be in a recording that starts later.
+/// Most set-up reports kept, for a recording that starts later.
 const MOST_SET_UP: usize = 16;
 
 /// One connected pad.
@@ -19,7 +19,7 @@ pub struct Pad {
     descriptor: Option<Vec<u8>>,
     encoder: Option<OutputEncoder>,
     /// Feature reports, and replies with calibrations.
-    set_up: Vec<(bool, Box<[u8]>)>,
+    start_up: Vec<(bool, Box<[u8]>)>,
     last_error: Option<ReportError>,
     recorder: Option<(f64, Recorder<Box<dyn Write + Send>>)>,
     recording_error: Option<RecordingError>,
@@ -34,14 +34,14 @@ impl Pad {
             session,
             descriptor,
             encoder,
-            set_up: Vec::new(),
+            start_up: Vec::new(),
             last_error: None,
             recorder: None,
             recording_error: None,
         }
     }
 
-    /// The last report that was refused, and why.
+    /// Why the last refused report was refused.
     #[must_use]
     pub fn last_error(&self) -> Option<ReportError> {
         self.last_error
@@ -62,7 +62,7 @@ impl Pad {
     /// Ends the recording and flushes it; true when there was one.
     ///
     /// # Errors
-    /// [`RecordingError`] when the output failed now or before.
+    /// [`RecordingError`] when the output fails or has failed before.
     pub fn stop_recording(&mut self) -> Result<bool, RecordingError> {
         if let Some(error) = self.recording_error.take() {
             self.recorder = None;
@@ -81,7 +81,7 @@ impl Pad {
             descriptor: self.descriptor.clone(),
         };
         let mut recorder = Recorder::new(out, &pad)?;
-        for (feature, report) in &self.set_up {
+        for (feature, report) in &self.start_up {
             let event = if *feature { PadEvent::Feature(report) } else { PadEvent::Report(report) };
             recorder.record(0.0, event)?;
         }
@@ -123,12 +123,12 @@ impl Pad {
     }
 
     fn keep(&mut self, feature: bool, report: &[u8]) {
-        if self.set_up.len() < MOST_SET_UP {
-            self.set_up.push((feature, report.into()));
+        if self.start_up.len() < MOST_SET_UP {
+            self.start_up.push((feature, report.into()));
         }
     }
 
-    /// A recording that fails ends; [`Pad::stop_recording`] tells.
+    /// Ends a recording that fails; [`Pad::stop_recording`] returns the error.
     fn write(&mut self, now_secs: f64, event: PadEvent<'_>) {
         if let Some((start_secs, recorder)) = &mut self.recorder
             && let Err(error) = recorder.record(now_secs - *start_secs, event)

@@ -1,10 +1,10 @@
-//! Reading numbers, hats and sticks out of report bytes.
+//! Reads numbers, hats and sticks from report bytes.
 
 use crate::{Button, Buttons, GamepadState, ReportError};
 
 pub(crate) const GRAVITY: f32 = 9.806_65;
 
-/// The first `N` bytes, or why not.
+/// The first `N` bytes, or an error.
 pub(crate) fn prefix<const N: usize>(report: &[u8]) -> Result<&[u8; N], ReportError> {
     let report_id = *report.first().ok_or(ReportError::Empty)?;
     report.first_chunk().ok_or(ReportError::TooShort { report_id, expected: N, found: report.len() })
@@ -22,7 +22,7 @@ pub(crate) fn i16x3_at(bytes: &[u8], at: usize) -> [i16; 3] {
     [i16_at(bytes, at), i16_at(bytes, at + 2), i16_at(bytes, at + 4)]
 }
 
-/// Maps `low..centre..high` to [-1, 0, 1], each half on its own; clamps. `low < centre < high`.
+/// Maps `low..centre..high` to [-1, 0, 1], each half linearly; clamps. `low < centre < high`.
 pub(crate) fn centred(value: i32, low: i32, centre: i32, high: i32) -> f32 {
     let reach = if value < centre { centre - low } else { high - centre };
     ((value - centre) as f32 / reach as f32).clamp(-1.0, 1.0)

@@ -27,7 +27,7 @@ impl DualSense {
         Self { bus, motion: MotionScale::NOMINAL }
     }
 
-    /// Takes the factory's calibration of the motion sensors (feature report 0x05).
+    /// Reads the factory calibration of the motion sensors (feature report 0x05).
     pub fn accept_feature(&mut self, report: &[u8]) {
         if report.first() == Some(&0x05) {
             self.motion = MotionScale::from_feature(report, true).unwrap_or(MotionScale::NOMINAL);
@@ -37,7 +37,7 @@ impl DualSense {
     /// Reads one report.
     ///
     /// # Errors
-    /// [`ReportError`] for short, unknown and corrupted reports; `input` is as before.
+    /// [`ReportError`] for short, unknown and corrupted reports; `input` is unchanged.
     pub fn parse_into(&self, report: &[u8], input: &mut PadInput) -> Result<Update, ReportError> {
         *input = match (*report.first().ok_or(ReportError::Empty)?, self.bus) {
             (0x01, Bus::Bluetooth) => {
@@ -74,7 +74,7 @@ impl DualSense {
     }
 }
 
-/// Low four bits: tenths of the charge; high four bits: what the charger does.
+/// Low four bits: tenths of the charge; high four bits: state of the charger.
 fn battery(status: u8) -> Battery {
     let percent = Some(((status & 0x0f) * 10 + 5).min(100));
     match status >> 4 {

@@ -30,7 +30,7 @@ impl DualShock4 {
         Self { bus, receiver, motion: MotionScale::NOMINAL }
     }
 
-    /// Takes the factory's calibration of the motion sensors (feature report 0x02, over Bluetooth 0x05).
+    /// Reads the factory calibration of the motion sensors (feature report 0x02, over Bluetooth 0x05).
     pub fn accept_feature(&mut self, report: &[u8]) {
         let pairs = match report.first() {
             Some(0x02) => !self.receiver,
@@ -43,7 +43,7 @@ impl DualShock4 {
     /// Reads one report.
     ///
     /// # Errors
-    /// [`ReportError`] for short, unknown and corrupted reports; `input` is as before.
+    /// [`ReportError`] for short, unknown and corrupted reports; `input` is unchanged.
     pub fn parse_into(&self, report: &[u8], input: &mut PadInput) -> Result<Update, ReportError> {
         match (*report.first().ok_or(ReportError::Empty)?, self.bus) {
             (0x01, Bus::Bluetooth) => {
@@ -62,7 +62,7 @@ impl DualShock4 {
                 check_crc(report)?;
                 *input = self.full(&report[3..], 4);
             }
-            // Bluetooth's audio reports; their controls are not needed, 0x11 comes as well.
+            // Audio reports over Bluetooth; their controls are not needed, since 0x11 is sent as well.
             (0x12..=0x19, Bus::Bluetooth) => return Ok(Update::Nothing),
             (report_id, _) => return Err(ReportError::UnknownReport { report_id }),
         }

@@ -1,8 +1,8 @@
 //! 8BitDo pads in their own HID modes: reports 0x01, 0x03, 0x04, and the old one of nine bytes without an id.
 //!
 //! Source of the layouts: SDL `src/joystick/hidapi/SDL_hidapi_8bitdo.c`; which face button is where: the
-//! positional entries of SDL's game controller database. In their other modes these pads are Switch Pro or Xbox
-//! pads and come in under those names.
+//! positional entries of SDL's game controller database. In their other modes these pads identify as Switch Pro or
+//! Xbox pads.
 
 use super::bytes::{GRAVITY, centred, i16x3_at, prefix, press, press_hat, trigger_u8};
 use crate::{Battery, Button, Buttons, GamepadState, Motion, PadInput, Power, ReportError, Update};
@@ -29,7 +29,7 @@ impl EightBitDo {
     /// Reads one report.
     ///
     /// # Errors
-    /// [`ReportError`] for short and unknown reports; `input` is as before.
+    /// [`ReportError`] for short and unknown reports; `input` is unchanged.
     pub fn parse_into(&self, report: &[u8], input: &mut PadInput) -> Result<Update, ReportError> {
         if let Ok(report) = <&[u8; OLD_LEN]>::try_from(report) {
             *input = PadInput { raw: self.old(report), ..PadInput::default() };

@@ -14,11 +14,11 @@ use super::bytes::{press_hat, press_pulled_triggers};
 use crate::descriptor::{Descriptor, DescriptorError, Field};
 use crate::{Button, Buttons, GamepadState, PadInput, ReportError, Update};
 
-/// Why a device is no pad that can be read.
+/// Why a device can't be read as a pad.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]
 pub enum NoGamepad {
-    /// The descriptor is broken.
+    /// The descriptor is invalid.
     #[error("report descriptor: {0}")]
     Descriptor(DescriptorError),
     /// The descriptor has no stick and no button in a game pad or joystick collection.
@@ -49,7 +49,7 @@ impl GenericPad {
     /// Reads the descriptor and decides which field is which control.
     ///
     /// # Errors
-    /// [`NoGamepad`] when the descriptor is broken or describes no pad.
+    /// [`NoGamepad`] when the descriptor is invalid or describes no pad.
     pub fn from_descriptor(id: PadId, bytes: &[u8]) -> Result<Self, NoGamepad> {
         let descriptor = Descriptor::from_bytes(bytes)?;
         Self::new(&descriptor, ButtonOrder::guess(id, &descriptor))
@@ -71,10 +71,10 @@ impl GenericPad {
         })
     }
 
-    /// Reads one report. Controls that are in other reports stay as they are.
+    /// Reads one report. Controls of other reports keep their values.
     ///
     /// # Errors
-    /// [`ReportError`] for reports shorter than the descriptor says and unknown ids; `input` is as before.
+    /// [`ReportError`] for reports shorter than the descriptor says and unknown ids; `input` is unchanged.
     pub fn parse_into(&self, report: &[u8], input: &mut PadInput) -> Result<Update, ReportError> {
         let first = *report.first().ok_or(ReportError::Empty)?;
         let (id, data) = if self.has_report_ids { (first, &report[1..]) } else { (0, report) };
@@ -108,7 +108,7 @@ impl GenericPad {
         Ok(update)
     }
 
-    /// A pad with pulls but no trigger buttons gets the buttons, and the other way round.
+    /// Derives trigger buttons from analog triggers, and analog triggers from trigger buttons, where one is missing.
     fn settle_triggers(&self, state: &mut GamepadState) {
         match (self.mapping.has_pulls, self.mapping.has_trigger_buttons) {
             (true, false) => press_pulled_triggers(state),

@@ -10,12 +10,12 @@ use super::{Bus, Model};
 /// Longest output report that [`OutputEncoder::encode_into`] writes.
 pub const MAX_OUTPUT_LEN: usize = 78;
 
-/// What a pad shall do until told otherwise. Default: nothing, light off.
+/// Rumble and light of a pad until the next output. Default: no rumble, light off.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct PadOutput {
-    /// Strength of the heavy, slow motor in [0, 1]; beyond is clamped, NaN is 0.
+    /// Strength of the heavy, slow motor in [0, 1]; clamped, NaN is 0.
     pub low_rumble: f32,
-    /// Strength of the light, fast motor in [0, 1]; beyond is clamped, NaN is 0.
+    /// Strength of the light, fast motor in [0, 1]; clamped, NaN is 0.
     pub high_rumble: f32,
     /// Red, green, blue of the light bar.
     pub light: [u8; 3],
@@ -72,7 +72,7 @@ impl OutputEncoder {
             (Model::XboxWireless | Model::XboxSeries, _) => {
                 let percent = |strength| (unit(strength) * 100.0).round() as u8;
                 let (low, high) = (percent(output.low_rumble), percent(output.high_rumble));
-                // Which motors, the two in the triggers, the two in the grips, for how long, delay, repeats.
+                // Motor mask, two trigger motors, two grip motors, duration, delay, repeats.
                 out[..9].copy_from_slice(&[0x03, 0x0f, 0, 0, low, high, 0xff, 0, 0xeb]);
                 9
             }
@@ -92,14 +92,14 @@ impl OutputEncoder {
         MAX_OUTPUT_LEN
     }
 
-    /// Flags say which of the fields count: rumble as on a DualShock 4, light bar.
+    /// Flags select the fields in use: rumble as on a DualShock 4, light bar.
     fn dualsense_common(&mut self, output: &PadOutput, common: &mut [u8]) {
         common[0] = 0x01 | 0x02;
         common[1] = 0x04;
         common[2] = byte(output.high_rumble);
         common[3] = byte(output.low_rumble);
         if !self.lit {
-            // Once: end the animation that the pad shows after connecting.
+            // Once: end the animation after connecting.
             common[38] = 0x02;
             common[41] = 0x02;
             self.lit = true;
@@ -125,7 +125,7 @@ fn dualshock4_common(output: &PadOutput, common: &mut [u8]) {
     common[5..8].copy_from_slice(&output.light);
 }
 
-/// Puts the CRC32 at the end.
+/// Writes the CRC32 to the end.
 fn seal(out: &mut [u8; MAX_OUTPUT_LEN]) {
     let (bytes, tail) = out.split_at_mut(MAX_OUTPUT_LEN - 4);
     tail.copy_from_slice(&crc32(OUTPUT_SEED, bytes).to_le_bytes());

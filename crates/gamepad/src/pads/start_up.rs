@@ -1,4 +1,4 @@
-//! What a pad must be told once before it sends its full reports. Pure data; the back end sends it.
+//! Requests that a pad needs once before it sends full reports. Pure data; the back end sends them.
 //!
 //! Source: Linux `drivers/hid/hid-nintendo.c` (handshake, subcommands), SDL `SDL_hidapi_ps4.c`,
 //! `SDL_hidapi_ps5.c`, `SDL_hidapi_8bitdo.c` (feature reports that switch to full reports).
@@ -7,11 +7,11 @@ use super::output::NO_RUMBLE;
 use super::switch_pro::{FACTORY_LEFT, FACTORY_RIGHT, USER_LEFT, USER_RIGHT};
 use super::{Bus, Model};
 
-/// One thing to send to a pad after opening it, in order; failures are not fatal.
+/// One request to a pad after opening it, in order; failures are not fatal.
 #[derive(Clone, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum Request {
-    /// Read this feature report and hand it to the parser.
+    /// Read this feature report and pass it to the parser.
     Feature {
         /// Number of the report.
         id: u8,
@@ -23,7 +23,7 @@ pub enum Request {
 }
 
 impl Model {
-    /// What to send after opening a pad of this model.
+    /// Requests after opening a pad of this model.
     #[must_use]
     pub fn start_up(self, bus: Bus) -> Vec<Request> {
         match (self, bus) {

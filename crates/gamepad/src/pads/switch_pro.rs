@@ -30,7 +30,7 @@ struct AxisRange {
 }
 
 impl AxisRange {
-    /// What the kernel uses when a pad has no sane calibration.
+    /// The kernel's default for a pad without a plausible calibration.
     const DEFAULT: Self = Self { low: 500, centre: 2000, high: 3500 };
 
     fn new(below: u16, centre: u16, above: u16) -> Option<Self> {
@@ -63,7 +63,7 @@ impl SwitchPro {
     /// Reads one report.
     ///
     /// # Errors
-    /// [`ReportError`] for short and unknown reports; `input` is as before.
+    /// [`ReportError`] for short and unknown reports; `input` is unchanged.
     pub fn parse_into(&mut self, report: &[u8], input: &mut PadInput) -> Result<Update, ReportError> {
         match *report.first().ok_or(ReportError::Empty)? {
             0x30 | 0x31 => {
@@ -81,7 +81,7 @@ impl SwitchPro {
                 *input = PadInput { raw: simple(prefix(report)?), ..PadInput::default() };
                 Ok(Update::Controls)
             }
-            // Answers of the USB handshake.
+            // Replies of the USB handshake.
             0x81 => Ok(Update::Nothing),
             report_id => Err(ReportError::UnknownReport { report_id }),
         }
@@ -100,7 +100,7 @@ impl SwitchPro {
         PadInput { raw, battery: Some(battery(report[2])), ..PadInput::default() }
     }
 
-    /// Takes the calibration out of a reply to a flash read. The user's goes before the factory's.
+    /// Reads the calibration from a reply to a flash read. The user's is preferred to the factory's.
     fn accept_reply(&mut self, report: &[u8]) {
         let Ok(reply) = prefix::<FLASH_REPLY_LEN>(report) else { return };
         if reply[13] & 0x80 == 0 || reply[14] != 0x10 {

@@ -27,7 +27,7 @@ impl XboxWireless {
     /// Reads one report.
     ///
     /// # Errors
-    /// [`ReportError`] for short and unknown reports; `input` is as before.
+    /// [`ReportError`] for short and unknown reports; `input` is unchanged.
     pub fn parse_into(&mut self, report: &[u8], input: &mut PadInput) -> Result<Update, ReportError> {
         match *report.first().ok_or(ReportError::Empty)? {
             0x01 => {

@@ -1,4 +1,4 @@
-//! What can be wrong with a recording.
+//! Errors of recordings.
 
 use std::path::PathBuf;
 
@@ -17,29 +17,31 @@ pub enum RecordingError {
         /// Version found.
         found: u16,
     },
-    /// Longer than any recording.
+    /// The recording is too long.
     #[error("expected at most {MAX_RECORDING_BYTES} bytes, found {found}")]
     TooLong {
         /// Bytes found; for a file at least this many.
         found: usize,
     },
-    /// The file ends in the middle of something.
+    /// The file ends inside the header or an event.
     #[error("byte {offset}: expected {expected} more bytes, found {found}")]
     Truncated {
-        /// Where they should be.
+        /// Offset of the missing bytes.
         offset: usize,
-        /// Bytes that should be there.
+        /// Bytes expected there.
         expected: usize,
-        /// Bytes that are.
+        /// Bytes found there.
         found: usize,
     },
-    /// The checksum of the header or of an event does not fit.
-    #[error("byte {offset}: expected the checksum of what starts here to fit, found another one")]
+    /// The checksum of the header or of an event does not match.
+    #[error(
+        "byte {offset}: expected the checksum of the header or event that starts here, found another one"
+    )]
     Checksum {
         /// Where the header or event starts.
         offset: usize,
     },
-    /// A field of the header has a value that does not exist.
+    /// A field of the header has an unknown value.
     #[error("header field `{name}`: expected a known value, found {found}")]
     Field {
         /// Name of the field.
@@ -50,7 +52,7 @@ pub enum RecordingError {
     /// The name is not UTF-8.
     #[error("header field `name`: expected UTF-8 text, found other bytes")]
     Name,
-    /// An unknown kind of event, or one whose bytes can't be.
+    /// An event has an unknown kind or invalid data.
     #[error(
         "event at byte {offset}: expected a known kind with its data (a report of at most {MAX_RECORDED_REPORT} \
          bytes, or a state), found kind {kind} with {len} bytes"
@@ -63,7 +65,7 @@ pub enum RecordingError {
         /// Length found.
         len: usize,
     },
-    /// Times go backwards, or past the limit.
+    /// A time is before the previous one or past the limit.
     #[error(
         "event at byte {offset}: expected a time from {previous} to {MAX_RECORDING_MICROS} us, found {found} us"
     )]
@@ -78,12 +80,12 @@ pub enum RecordingError {
     /// The file can't be read or written.
     #[error("cannot be read or written: {0}")]
     Io(std::io::Error),
-    /// Any of the others, in a named file.
+    /// Any other error, with the file.
     #[error("{}: {cause}", file.display())]
     InFile {
         /// The recording's file.
         file: PathBuf,
-        /// What is wrong in it.
+        /// The error.
         cause: Box<RecordingError>,
     },
 }

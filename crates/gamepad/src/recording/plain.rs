@@ -20,7 +20,7 @@ pub(super) fn encode_state(state: &GamepadState) -> [u8; STATE_LEN] {
     bytes
 }
 
-/// `None` for a wrong length, and for values that no pad has.
+/// `None` for a wrong length and for values outside their ranges.
 pub(super) fn decode_state(bytes: &[u8]) -> Option<GamepadState> {
     let bytes: &[u8; STATE_LEN] = bytes.try_into().ok()?;
     let axis =
@@ -55,7 +55,7 @@ pub(super) fn encode_calibration(calibration: &Calibration) -> [u8; CALIBRATION_
     bytes
 }
 
-/// `None` for a wrong length, rest positions beyond [-0.5, 0.5], and thresholds that are none.
+/// `None` for a wrong length, rest positions beyond [-0.5, 0.5], and invalid thresholds.
 pub(super) fn decode_calibration(bytes: &[u8]) -> Option<Calibration> {
     let bytes: &[u8; CALIBRATION_LEN] = bytes.try_into().ok()?;
     let value =

@@ -1,11 +1,11 @@
-//! A recording played as a pad.
+//! Plays a recording as a virtual pad.
 
 use super::{PadEvent, Recording};
 use crate::{NoGamepad, PadReport, PadSession};
 
-/// A virtual pad: a recording and how far it has been played.
+/// A virtual pad: a recording and its playing position.
 ///
-/// The report at a time depends on the recording and the time alone, however the time was reached.
+/// The report at a time depends only on the recording and that time, not on the steps to it.
 #[derive(Clone, Debug)]
 pub struct VirtualPad {
     recording: Recording,
@@ -18,7 +18,7 @@ impl VirtualPad {
     /// A pad at the start of `recording`.
     ///
     /// # Errors
-    /// [`NoGamepad`] when the recording's pad is not known and its descriptor describes none.
+    /// [`NoGamepad`] when the recorded pad is unknown and its descriptor describes no gamepad.
     pub fn new(recording: Recording) -> Result<Self, NoGamepad> {
         let session = Self::session(&recording)?;
         Ok(Self { recording, session, next: 0, time_secs: 0.0 })
@@ -44,7 +44,8 @@ impl VirtualPad {
         self.next >= self.recording.len()
     }
 
-    /// Plays on to `time_secs` and returns the pad's report then. Going back does nothing. Does not allocate.
+    /// Plays to `time_secs` and returns the pad's report at that time. An earlier time changes nothing. Does not
+    /// allocate.
     pub fn report_at(&mut self, time_secs: f64) -> PadReport {
         while let Some((event_secs, event)) = self.recording.event(self.next) {
             let due = event_secs <= time_secs;
@@ -65,7 +66,7 @@ impl VirtualPad {
         self.session.report_at(self.time_secs)
     }
 
-    /// Number of reports taken and refused so far.
+    /// Number of reports accepted and refused so far.
     #[must_use]
     pub fn counts(&self) -> (u64, u64) {
         self.session.counts()

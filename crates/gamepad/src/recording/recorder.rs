@@ -1,4 +1,4 @@
-//! Writing a recording, event by event.
+//! Writes a recording, event by event.
 
 use std::io::Write;
 
@@ -9,7 +9,7 @@ use super::{
 use crate::descriptor::MAX_DESCRIPTOR_BYTES;
 use crate::pads::Bus;
 
-/// Writes one pad's events. Each event is whole once written, so a recording may end at any time.
+/// Writes one pad's events. Each event is complete once it is written, so a recording may end at any time.
 #[derive(Debug)]
 pub struct Recorder<W: Write> {
     out: W,
@@ -47,7 +47,8 @@ impl<W: Write> Recorder<W> {
         Ok(Self { out, last_micros: 0, buffer })
     }
 
-    /// Writes one event that came `time_secs` after the start. A time before the last event's is taken as that.
+    /// Writes one event that occurred `time_secs` after the start. An earlier time than the last event's becomes that
+    /// time.
     ///
     /// # Errors
     /// [`RecordingError::Io`] when the output fails; [`RecordingError::Event`] for a report that is too long.
@@ -82,7 +83,7 @@ impl<W: Write> Recorder<W> {
         Ok(())
     }
 
-    /// Ends the recording and gives the output back, flushed.
+    /// Ends the recording, flushes the output and returns it.
     ///
     /// # Errors
     /// [`RecordingError::Io`] when the output fails.

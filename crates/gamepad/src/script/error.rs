@@ -1,26 +1,29 @@
-//! What can be wrong with a script.
+//! Errors of scripts.
 
 use std::path::PathBuf;
 
 use super::{MAX_SCRIPT_BYTES, MAX_SCRIPT_ENTRIES, MAX_SCRIPT_SECS};
 
+/// Most characters of a reason that are shown: it may quote the file.
+const MAX_REASON: usize = 200;
+
 /// Why a script was refused.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum ScriptError {
-    /// The text is no script: broken RON, an unknown field or button, or a value out of its range.
-    #[error("line {line}, column {column}: {reason} (in `{excerpt}`)")]
+    /// The text is not a script: invalid RON, an unknown field or button, or a value out of its range.
+    #[error("line {line}, column {column}: {} (in `{excerpt}`)", printable(&reason.to_string(), MAX_REASON))]
     Malformed {
         /// Line at which reading stopped, from 1.
         line: usize,
         /// Column at which reading stopped, from 1.
         column: usize,
-        /// What was expected and what was found.
+        /// What was expected and found.
         reason: Box<ron::error::Error>,
-        /// That line, cut short.
+        /// That line, cut short, without control characters.
         excerpt: String,
     },
-    /// The text is too long to be a script.
+    /// The text is too long.
     #[error("expected at most {MAX_SCRIPT_BYTES} bytes, found {found}")]
     TooLong {
         /// Length found, in bytes; for a file at least this many.
@@ -35,12 +38,12 @@ pub enum ScriptError {
     /// The file can't be read.
     #[error("cannot be read: {0}")]
     Unreadable(std::io::Error),
-    /// Any of the others, in a named file.
+    /// Any other error, with the file.
     #[error("{}: {cause}", file.display())]
     InFile {
         /// The script's file.
         file: PathBuf,
-        /// What is wrong in it.
+        /// The error.
         cause: Box<ScriptError>,
     },
 }
@@ -51,7 +54,13 @@ impl From<std::io::Error> for ScriptError {
     }
 }
 
-/// A value that RON can read but a script can't have; shown inside [`ScriptError::Malformed`].
+/// The first `most` characters of text from a file, with control characters replaced, so that it can't control a terminal.
+pub(super) fn printable(text: &str, most: usize) -> String {
+    let shown = |c: char| if c.is_control() { char::REPLACEMENT_CHARACTER } else { c };
+    text.chars().map(shown).take(most).collect()
+}
+
+/// A value that is valid in RON but not in a script; shown inside [`ScriptError::Malformed`].
 #[derive(Debug, thiserror::Error)]
 pub(super) enum Defect {
     #[error("time: expected seconds in [0, {MAX_SCRIPT_SECS}], found {0}")]

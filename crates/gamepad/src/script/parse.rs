@@ -1,17 +1,16 @@
 //! The RON form of a script. Every range is checked while reading, so that each error has its line.
 
 use std::fmt;
-use std::fs::File;
 use std::io::Read;
 use std::path::Path;
 
 use serde::Deserialize;
 use serde::de::{Deserializer, Error as _, SeqAccess, Visitor};
 
-use super::button_name::ButtonName;
-use super::error::{Defect, ScriptError};
+use super::error::{Defect, ScriptError, printable};
 use super::{MAX_SCRIPT_BYTES, MAX_SCRIPT_ENTRIES, MAX_SCRIPT_SECS, TAP_SECS};
 use crate::Button;
+use crate::files::open_regular;
 
 pub(super) fn parse(text: &str) -> Result<ScriptFile, ScriptError> {
     if text.len() > MAX_SCRIPT_BYTES {
@@ -29,13 +28,13 @@ pub(super) fn parse(text: &str) -> Result<ScriptFile, ScriptError> {
 
 fn excerpt(text: &str, line: usize) -> String {
     const LONGEST: usize = 80;
-    text.lines().nth(line.saturating_sub(1)).unwrap_or_default().trim().chars().take(LONGEST).collect()
+    printable(text.lines().nth(line.saturating_sub(1)).unwrap_or_default().trim(), LONGEST)
 }
 
-/// Reads at most one byte over the limit, so that a huge file costs nothing.
+/// Reads at most one byte over the limit, so that a huge file is not read.
 pub(super) fn read_limited(path: &Path) -> Result<String, ScriptError> {
     let mut bytes = Vec::new();
-    File::open(path)?.take(MAX_SCRIPT_BYTES as u64 + 1).read_to_end(&mut bytes)?;
+    open_regular(path)?.take(MAX_SCRIPT_BYTES as u64 + 1).read_to_end(&mut bytes)?;
     if bytes.len() > MAX_SCRIPT_BYTES {
         return Err(ScriptError::TooLong { found: bytes.len() });
     }
@@ -43,7 +42,7 @@ pub(super) fn read_limited(path: &Path) -> Result<String, ScriptError> {
         .map_err(|error| ScriptError::NotUtf8 { offset: error.utf8_error().valid_up_to() })
 }
 
-/// A whole file whose cross-checks passed.
+/// A file that passed all checks across entries.
 #[derive(Deserialize)]
 #[serde(try_from = "ScriptFile")]
 struct Checked(ScriptFile);
@@ -81,8 +80,8 @@ impl Entry {
 
     fn contradiction(&self) -> Option<Button> {
         let lists = [&self.press.0, &self.release.0, &self.tap.0];
-        let count = |button: &ButtonName| lists.iter().filter(|list| list.contains(button)).count();
-        lists.into_iter().flatten().find(|button| count(button) > 1).map(|name| name.button())
+        let count = |button: &Button| lists.iter().filter(|list| list.contains(button)).count();
+        lists.into_iter().flatten().find(|button| count(button) > 1).copied()
     }
 }
 
@@ -147,7 +146,7 @@ fn check_next(before: &[Entry], next: &Entry) -> Result<(), Defect> {
     }
 }
 
-/// A time or a length of time in seconds.
+/// A time or a duration in seconds.
 #[derive(Clone, Copy, Default, Deserialize)]
 #[serde(try_from = "f64")]
 pub(super) struct Secs(pub(super) f64);
@@ -186,9 +185,9 @@ impl TryFrom<f32> for Pull {
     }
 }
 
-/// Buttons without repetition, hence never more than there are.
+/// Buttons without repetition.
 #[derive(Default)]
-pub(super) struct ButtonList(pub(super) Vec<ButtonName>);
+pub(super) struct ButtonList(pub(super) Vec<Button>);
 
 impl<'de> Deserialize<'de> for ButtonList {
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
@@ -202,9 +201,9 @@ impl<'de> Deserialize<'de> for ButtonList {
 
             fn visit_seq<A: SeqAccess<'de>>(self, mut seq: A) -> Result<ButtonList, A::Error> {
                 let mut names = Vec::new();
-                while let Some(name) = seq.next_element::<ButtonName>()? {
+                while let Some(name) = seq.next_element::<Button>()? {
                     if names.contains(&name) {
-                        return Err(A::Error::custom(Defect::Twice(name.button())));
+                        return Err(A::Error::custom(Defect::Twice(name)));
                     }
                     names.push(name);
                 }

@@ -1,8 +1,8 @@
-//! One channel of a script over time: analog values in straight lines, buttons in edges.
+//! One channel of a script over time: analog values interpolated linearly, buttons in edges.
 
 use crate::{Button, Buttons};
 
-/// One analog channel: at each key it sets out from where it is for the key's value.
+/// One analog channel: from each key on it moves from its present value to the key's value.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(super) struct Track(Vec<Key>);
 
@@ -51,7 +51,7 @@ impl ButtonTrack {
         self.edges.push((at_secs, button, pressed));
     }
 
-    /// Sorts the edges (taps release out of order) and sums them up. Edges at one time keep their order.
+    /// Sorts the edges (taps release out of order) and accumulates them. Edges at one time keep their order.
     pub(super) fn finish(&mut self) {
         let mut edges = std::mem::take(&mut self.edges);
         edges.sort_by(|a, b| a.0.total_cmp(&b.0));

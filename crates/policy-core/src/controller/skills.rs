@@ -2,13 +2,21 @@
 
 use alloc::sync::Arc;
 
+use glam::Vec2;
+
 use super::Controller;
+use crate::command::Command;
 use crate::controller_state::ControllerState;
 use crate::fall::{Heights, fall_height};
+use crate::heading::Heading;
 use crate::ids::SkillId;
+use crate::observation::TARGET_RANGE_METRES;
 use crate::path::GraphPosition;
 use crate::skill::{Refusal, SkillEnd, SkillProgress};
 use crate::state::CharacterState;
+
+/// Longest time that a requested skill stays pending, seconds.
+const LONGEST_PENDING_SECS: f32 = 4.0;
 
 impl Controller {
     /// Runs the skill that is on for a tick, and ends it when it has come to its end.
@@ -48,20 +56,47 @@ impl Controller {
         }
     }
 
-    /// Takes a request, and starts the pending skill where the position on the graph allows it.
-    pub(super) fn request_skill(&mut self, request: Option<SkillId>, heights: Heights) {
+    /// Takes a request, and starts the pending skill where position and speed allow it.
+    pub(super) fn request_skill(
+        &mut self,
+        request: Option<SkillId>,
+        state: &CharacterState,
+        heights: Heights,
+        dt: f32,
+    ) {
         if let Some(skill) = request {
             match self.refusal(skill, heights) {
                 Some(why) => self.state.report.skill_refused = Some((skill, why)),
-                None => self.state.report.pending_skill = Some(skill),
+                None => (self.state.report.pending_skill, self.state.pending_secs) = (Some(skill), 0.0),
             }
         }
         let Some(pending) = self.state.report.pending_skill else { return };
-        let skill = &self.pack.skills()[pending.index()];
-        let ready = skill.starts_from(self.state.report.position.nearest_node());
-        if ready && self.state.report.skill.is_none() {
-            self.start_skill(pending);
+        if self.state.report.skill.is_some() {
+            return;
         }
+        let skill = &self.pack.skills()[pending.index()];
+        let velocity = state.root().linear_velocity.truncate();
+        let fast = skill.minimum_speed_mps == 0.0
+            || velocity.length_squared() >= skill.minimum_speed_mps * skill.minimum_speed_mps;
+        if fast && skill.starts_from(self.state.report.position.nearest_node()) {
+            return self.start_skill(pending);
+        }
+        self.state.pending_secs += dt;
+        if self.state.pending_secs > LONGEST_PENDING_SECS {
+            self.state.report.skill_refused = Some((pending, Refusal::TookTooLong));
+            self.state.report.pending_skill = None;
+        }
+    }
+
+    /// The target of a tick: the command's. A pending skill that needs speed runs straight ahead while there is none.
+    pub(super) fn target(&self, state: &CharacterState, command: &Command) -> Option<Vec2> {
+        let skill = self.state.report.pending_skill.map(|s| &self.pack.skills()[s.index()]);
+        let runs_up = skill.is_some_and(|s| s.minimum_speed_mps > 0.0) && self.state.report.skill.is_none();
+        command.target.or_else(|| {
+            let root = state.root();
+            let ahead = Heading::from_rotation(root.rotation).direction() * TARGET_RANGE_METRES;
+            runs_up.then(|| root.position.truncate() + ahead)
+        })
     }
 
     /// Why a requested skill can only hurt. The recovery skill throws an upright character to the ground.

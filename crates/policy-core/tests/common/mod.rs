@@ -85,6 +85,7 @@ pub fn manifest() -> Manifest {
         name: name.into(),
         policy: "roll".into(),
         entry: entry.iter().map(|n| (*n).into()).collect(),
+        minimum_speed_mps: 0.0,
         returns_to: "walk".into(),
         discriminator: Some("walk".into()),
         end,

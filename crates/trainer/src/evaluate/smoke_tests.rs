@@ -69,6 +69,7 @@ fn pack(falls: bool) -> Arc<CharacterPack> {
         minimum_height: 0.0,
     };
     let roll = SkillEntry {
+        minimum_speed_mps: 0.0,
         name: "roll".into(),
         policy: "roll".into(),
         entry: Vec::new(),

@@ -12,12 +12,9 @@ use std::sync::mpsc::{Receiver, channel};
 
 use glam::{Vec2, Vec3};
 use physics_bridge::{Character, Model, WALKING_START_MPS};
-use policy_core::{
-    CharacterPack, CharacterState, Command, Controller, ControllerConfig, Goal, Heading, OBSERVATION_LEN,
-};
+use policy_core::{CharacterPack, Command, Controller, ControllerConfig, Goal, Heading, NodeId};
 
-use crate::assets;
-use crate::sim::{Actor, TICK_SECS};
+use crate::sim::{SteeredCharacter, model_of};
 use components::Components;
 pub use parameters::ParameterMap;
 
@@ -33,7 +30,7 @@ pub struct CloudPoint {
     /// On the first three axes, scaled to about [-1, 1].
     pub at: Vec3,
     /// The policy that ran.
-    pub node: usize,
+    pub node: NodeId,
 }
 
 /// Both maps.
@@ -49,26 +46,27 @@ pub struct Analysis {
 }
 
 impl Analysis {
-    /// Works everything out on a thread; the receiver gets it once. Nothing comes when the humanoid is broken.
+    /// Computes both maps on a thread; the receiver gets them once. Nothing comes when the pack's body can't be
+    /// simulated.
     #[must_use]
     pub fn start(pack: Arc<CharacterPack>) -> Receiver<Self> {
         let (sender, receiver) = channel();
         std::thread::spawn(move || {
             if let Some(analysis) = Self::of(&pack) {
-                // The demo may have gone on with another pack.
+                // The demo may have opened another pack by then.
                 let _ = sender.send(analysis);
             }
         });
         receiver
     }
 
-    /// Works everything out, about a second. `None` when the humanoid is broken.
+    /// Computes both maps, which takes about a second. `None` when the pack's body can't be simulated.
     #[must_use]
     pub fn of(pack: &Arc<CharacterPack>) -> Option<Self> {
-        let model = Model::from_mjcf(assets::HUMANOID_MJCF).ok()?;
-        let mut rows: Vec<(usize, [f32; OBSERVATION_LEN])> = Vec::new();
+        let model = model_of(pack).ok()?;
+        let mut rows: Vec<(NodeId, Vec<f32>)> = Vec::new();
         for node in 0..pack.policies().len() {
-            visit(pack, &model, node, &mut rows)?;
+            visit(pack, &model, NodeId::new(node), &mut rows)?;
         }
         let flat: Vec<&[f32]> = rows.iter().map(|(_, row)| &row[..]).collect();
         let states = Components::of(&flat);
@@ -78,40 +76,39 @@ impl Analysis {
         Some(Self { states, cloud, trail, parameters: ParameterMap::of(pack) })
     }
 
-    /// Takes in where the player is.
-    pub fn follow(&mut self, player: &Actor) {
+    /// Adds where the player is.
+    pub fn follow(&mut self, player: &SteeredCharacter) {
         let input = player.controller.policy_input();
+        let observation = player.controller.pack().skeleton().observation_len();
         if self.trail.len() == TRAIL {
             self.trail.pop_front();
         }
-        self.trail.push_back(self.states.project(&input[..OBSERVATION_LEN]));
+        self.trail.push_back(self.states.project(&input[..observation]));
     }
 }
 
-/// Lets one policy run and keeps what it saw.
+/// Lets one policy run and keeps what it observed.
 fn visit(
     pack: &Arc<CharacterPack>,
     model: &Model,
-    node: usize,
-    rows: &mut Vec<(usize, [f32; OBSERVATION_LEN])>,
+    node: NodeId,
+    rows: &mut Vec<(NodeId, Vec<f32>)>,
 ) -> Option<()> {
-    let moves = pack.graph().nodes()[node].speed_mps.is_some_and(|s| s > 0.1);
+    let moves = pack.graph().node(node).speed_mps.is_some_and(|s| s > 0.1);
     let mut character = Character::new(model);
     let speed = if moves { WALKING_START_MPS } else { 0.0 };
     character.stand_at(0.0, 0.0, Heading::FORWARD, speed).ok()?;
-    let config = ControllerConfig { start: node, recover: false, ..ControllerConfig::default() };
+    let config = ControllerConfig { start: node, auto_recover: false, ..ControllerConfig::default() };
     let mut controller = Controller::with_config(Arc::clone(pack), config);
     let target = moves.then_some(Vec2::new(100.0, 0.0));
     let command = Command { target, goal: Goal::Node(node), ..Command::default() };
-    let mut state = CharacterState::default();
+    let observation = model.skeleton().observation_len();
     for tick in 0..RUN_TICKS {
-        character.sense_into(&mut state);
-        let targets = *controller.tick(&state, &command, TICK_SECS);
+        let stepped = character.control_tick(&mut controller, &command, 1.0 / model.control_hz());
         if tick >= WARM_UP {
-            rows.push((node, *controller.policy_input().first_chunk()?));
+            rows.push((node, controller.policy_input()[..observation].to_vec()));
         }
-        character.actuate(&targets);
-        if character.step().is_err() {
+        if stepped.is_err() {
             break;
         }
     }

@@ -46,7 +46,7 @@ impl ParameterMap {
     pub fn blend(&self, blend: &Blend) -> Vec3 {
         let mut at = -self.mean;
         for term in blend.terms() {
-            let Some(layers) = self.layers.get(term.policy) else { continue };
+            let Some(layers) = self.layers.get(term.policy.index()) else { continue };
             at += layers.iter().zip(term.weights).map(|(layer, weight)| *layer * weight).sum::<Vec3>();
         }
         at

@@ -1,7 +1,15 @@
 //! The one place where commands act.
 
+use std::path::Path;
+use std::sync::Arc;
+
+use policy_core::CharacterPack;
+
 use super::{App, Layers, ViewerCommand};
-use crate::sim::{SimConfig, TICK_SECS};
+use crate::appearance;
+use crate::dropped::{Dropped, DroppedError};
+use crate::render::Appearance;
+use crate::sim::{SimConfig, SimError};
 
 /// How far a failure is rewound, seconds.
 const REWIND_SECS: f32 = 2.0;
@@ -32,7 +40,10 @@ impl App {
             return;
         }
         match command {
-            ViewerCommand::Goal(goal) => self.sim.overrides.goal = goal,
+            ViewerCommand::Goal(goal) => {
+                self.sim.overrides.goal = goal;
+                self.overridden_at = self.input();
+            }
             ViewerCommand::Layers(layers) => self.layers = layers,
             ViewerCommand::SavePreset(preset) => {
                 self.layout.presets.retain(|p| p.name != preset.name);
@@ -42,7 +53,7 @@ impl App {
                 self.layout.presets.remove(index);
             }
             ViewerCommand::DeletePreset(_) => {}
-            ViewerCommand::Mode(mode) => self.sim.overrides.mode = mode,
+            ViewerCommand::Mode(mode) => self.sim.set_blend_mode(mode),
             ViewerCommand::Ghost(Some(mode)) => self.sim.start_ghost(mode),
             ViewerCommand::Ghost(None) => self.sim.stop_ghost(),
             ViewerCommand::Skill(skill) => self.sim.overrides.skill = Some(skill),
@@ -56,6 +67,7 @@ impl App {
             ViewerCommand::Help(open) => self.help = open,
             ViewerCommand::Record(what) => self.record = Some(what),
             ViewerCommand::DismissNotice => self.notice = None,
+            ViewerCommand::AskToQuit(ask) => self.leaving = ask,
             ViewerCommand::Quit => self.quit = true,
             ViewerCommand::Grab(grab) => self.grab = grab,
             world => self.apply_to_world(world),
@@ -87,7 +99,7 @@ impl App {
             }
             ViewerCommand::RewindAfterFailure => {
                 let (kept, _) = self.sim.history();
-                self.sim.rewind_to(((REWIND_SECS / TICK_SECS).round() as usize).min(kept));
+                self.sim.rewind_to(((REWIND_SECS / self.sim.tick_secs()).round() as usize).min(kept));
                 self.failure = None;
             }
             ViewerCommand::ResetAfterFailure => {
@@ -122,11 +134,38 @@ impl App {
         }
     }
 
-    /// Goes on with another pack.
-    pub fn set_pack(&mut self, pack: std::sync::Arc<policy_core::CharacterPack>) {
+    /// Begins anew with the characters of another pack.
+    ///
+    /// # Errors
+    /// When its body can't be simulated; nothing is changed then.
+    pub fn set_pack(&mut self, pack: Arc<CharacterPack>) -> Result<(), SimError> {
+        self.sim.set_pack(Arc::clone(&pack))?;
         self.layers = Layers::new(&pack);
-        self.sim.set_pack(pack);
-        self.analysis = None;
+        self.clock.set_tick_secs(self.sim.tick_secs());
+        let state = &self.sim.player().state;
+        self.camera.set_size(state.root_height());
+        self.camera.settle(state.root().position, state.ground_height);
+        self.trail.clear();
+        (self.analysis, self.failure, self.grab) = (None, None, None);
         self.start_analysis();
+        Ok(())
+    }
+
+    /// Opens a file that was dropped on the window: a pack, or a mesh for the present character. Returns what it is and
+    /// how characters look from now on.
+    ///
+    /// # Errors
+    /// When it is neither, or does not fit; nothing is changed then.
+    pub fn open_dropped(&mut self, path: &Path) -> Result<(&'static str, Appearance), DroppedError> {
+        let rig = appearance::rig(self.sim.model());
+        match Dropped::load(path, &rig)? {
+            Dropped::Mesh(mesh) => Ok(("mesh", Appearance::new(rig.skeleton(), Some(*mesh)))),
+            Dropped::Pack(pack) => {
+                self.set_pack(Arc::clone(&pack))
+                    .map_err(|source| DroppedError::Body { path: path.to_owned(), source })?;
+                let (appearance, _) = appearance::of_pack(&pack, self.sim.model());
+                Ok(("character pack", appearance))
+            }
+        }
     }
 }

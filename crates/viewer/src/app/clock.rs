@@ -1,7 +1,5 @@
 //! Real time to whole ticks: fixed steps off the draw rate.
 
-use crate::sim::TICK_SECS;
-
 /// Most ticks in one frame: below real time the demo slows down rather than stalls.
 const MOST_TICKS: u32 = 64;
 /// Longest frame that counts, seconds: after a longer one (a moved window, a breakpoint) time is dropped.
@@ -16,18 +14,26 @@ pub struct Clock {
     pub speed: f32,
     /// Ticks to run though paused.
     pub steps: u32,
+    /// Length of a control tick, seconds.
+    tick_secs: f32,
+    /// Seconds that no tick has used yet.
     left: f32,
     /// Simulated over real seconds, smoothed.
     pub realtime_factor: f32,
 }
 
-impl Default for Clock {
-    fn default() -> Self {
-        Self { paused: false, speed: 1.0, steps: 0, left: 0.0, realtime_factor: 0.0 }
-    }
-}
-
 impl Clock {
+    /// A clock for ticks of `tick_secs` seconds.
+    #[must_use]
+    pub fn new(tick_secs: f32) -> Self {
+        Self { paused: false, speed: 1.0, steps: 0, tick_secs, left: 0.0, realtime_factor: 0.0 }
+    }
+
+    /// Counts ticks of another length from now on.
+    pub fn set_tick_secs(&mut self, tick_secs: f32) {
+        (self.tick_secs, self.left) = (tick_secs, 0.0);
+    }
+
     /// Speeds that panels offer.
     pub const SPEEDS: [f32; 9] = [1.0 / 32.0, 1.0 / 16.0, 0.125, 0.25, 0.5, 1.0, 2.0, 4.0, 8.0];
 
@@ -39,12 +45,12 @@ impl Clock {
             std::mem::take(&mut self.steps).min(MOST_TICKS)
         } else {
             self.left += dt * self.speed;
-            let ticks = ((self.left / TICK_SECS) as u32).min(MOST_TICKS);
-            self.left = (self.left - ticks as f32 * TICK_SECS).min(TICK_SECS);
+            let ticks = ((self.left / self.tick_secs) as u32).min(MOST_TICKS);
+            self.left = (self.left - ticks as f32 * self.tick_secs).min(self.tick_secs);
             ticks
         };
         if dt > 0.0 {
-            let now = ticks as f32 * TICK_SECS / dt;
+            let now = ticks as f32 * self.tick_secs / dt;
             self.realtime_factor += (now - self.realtime_factor) * (dt * 2.0).min(1.0);
         }
         ticks
@@ -52,13 +58,13 @@ impl Clock {
 
     /// Puts the picture so far into the tick, for pictures at times of their own.
     pub fn set_alpha(&mut self, alpha: f32) {
-        self.left = alpha.clamp(0.0, 1.0) * TICK_SECS;
+        self.left = alpha.clamp(0.0, 1.0) * self.tick_secs;
     }
 
     /// Share of a tick that has passed since the last one.
     #[must_use]
     pub fn alpha(&self) -> f32 {
-        (self.left / TICK_SECS).clamp(0.0, 1.0)
+        (self.left / self.tick_secs).clamp(0.0, 1.0)
     }
 }
 
@@ -66,10 +72,12 @@ impl Clock {
 mod tests {
     use super::*;
 
+    const TICK_SECS: f32 = 1.0 / 30.0;
+
     #[test]
     fn ticks_keep_to_the_time_at_any_frame_rate() {
         for fps in [7.0, 30.0, 59.94, 144.0, 1000.0] {
-            let mut clock = Clock::default();
+            let mut clock = Clock::new(TICK_SECS);
             let frames = (4.0 * fps) as usize;
             let ticks: u32 = (0..frames).map(|_| clock.ticks_due(1.0 / fps)).sum();
             let due = frames as f32 / fps / TICK_SECS;
@@ -79,7 +87,7 @@ mod tests {
 
     #[test]
     fn a_paused_clock_steps_only_when_asked() {
-        let mut clock = Clock { paused: true, ..Clock::default() };
+        let mut clock = Clock { paused: true, ..Clock::new(TICK_SECS) };
         assert_eq!(clock.ticks_due(1.0), 0);
         clock.steps = 1;
         assert_eq!((clock.ticks_due(0.01), clock.ticks_due(0.01)), (1, 0));
@@ -87,7 +95,7 @@ mod tests {
 
     #[test]
     fn a_stall_does_not_make_an_avalanche() {
-        let mut clock = Clock { speed: 8.0, ..Clock::default() };
+        let mut clock = Clock { speed: 8.0, ..Clock::new(TICK_SECS) };
         assert!(clock.ticks_due(1e6) <= MOST_TICKS && clock.ticks_due(f32::NAN) <= 1);
     }
 }

@@ -2,12 +2,12 @@
 
 use glam::Vec2;
 use physics_bridge::Settings;
-use policy_core::{BlendMode, Goal};
+use policy_core::{BlendMode, Goal, SkillId};
 
 use super::{Grab, Layers, PanelKind, Preset};
 use crate::camera::CameraMode;
+use crate::scene_setup::Shown;
 use crate::sim::GroundKind;
-use crate::stage::Shown;
 
 /// What to record.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -26,7 +26,7 @@ pub enum Record {
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum ViewerCommand {
-    /// Go somewhere on the graph whatever the triggers say; `None` gives them back.
+    /// Go somewhere on the graph whatever the triggers say; `None` returns to the triggers.
     Goal(Option<Goal>),
     /// Blend per layer.
     Layers(Layers),
@@ -39,8 +39,8 @@ pub enum ViewerCommand {
     /// A second character under another mode; `None` ends it.
     Ghost(Option<BlendMode>),
     /// Start a skill.
-    Skill(usize),
-    /// Stand still or go on.
+    Skill(SkillId),
+    /// Pause or continue.
     Pause(bool),
     /// One tick.
     Step,
@@ -50,7 +50,7 @@ pub enum ViewerCommand {
     StepBack,
     /// Of real time.
     Speed(f32),
-    /// Everybody back to the start.
+    /// Put every character back to the start.
     Reset,
     /// Gravity, friction, strength.
     Settings(Settings),
@@ -58,7 +58,7 @@ pub enum ViewerCommand {
     Ground(GroundKind),
     /// So many characters.
     Characters(usize),
-    /// Pull a body, or let go.
+    /// Pull a body, or release it.
     Grab(Option<Grab>),
     /// How the camera moves.
     Camera(CameraMode),
@@ -78,12 +78,14 @@ pub enum ViewerCommand {
     Help(bool),
     /// Screenshot, sequence, film.
     Record(Record),
-    /// Go on after a failure, from some ticks before it.
+    /// Continue after a failure, from some ticks before it.
     RewindAfterFailure,
-    /// Go on after a failure, from the start.
+    /// Continue after a failure, from the start.
     ResetAfterFailure,
     /// A message was read.
     DismissNotice,
+    /// Ask whether to leave, or no longer.
+    AskToQuit(bool),
     /// Leave.
     Quit,
 }

@@ -7,7 +7,7 @@ use super::{App, Record, ViewerCommand};
 use crate::camera::CameraMode;
 use crate::sim::SHOVE_BUTTON;
 
-/// Seconds in which a held key runs a trigger from 0 to 1, and back when let go.
+/// Seconds in which a held key runs a trigger from 0 to 1, and back when it is released.
 const RAMP_SECS: f32 = 1.2;
 /// Seconds in which the stick follows the keys.
 const STICK_SECS: f32 = 0.15;
@@ -26,7 +26,7 @@ pub struct Keys {
 /// What keys do, for the help overlay.
 pub const KEYS: [(&str, &str); 19] = [
     ("W A S D, arrows", "walk where the camera looks; with Shift half as fast"),
-    ("E", "hold: right trigger, the speed path; lets go slowly"),
+    ("E", "hold: right trigger, the speed path; it returns slowly"),
     ("Q", "hold: left trigger, the stance path"),
     ("Z", "hold: right shoulder, the style path, where the pack has one"),
     ("Space", "get up"),
@@ -43,7 +43,7 @@ pub const KEYS: [(&str, &str); 19] = [
     ("G", "ghost under another mode"),
     ("X", "collision shapes"),
     ("F2, F3", "screenshot, film"),
-    ("Tab, F1, Esc", "hide panels, this help, leave"),
+    ("Tab, F1, Esc", "hide panels, this help, leave (it asks first)"),
 ];
 
 /// What pad controls do, for the help overlay.
@@ -85,9 +85,20 @@ impl Keys {
     }
 }
 
-/// Takes in the keys of this frame.
+/// Gives the keyboard back to the game: only a text field keeps it. Without this, Tab would move egui's focus from
+/// button to button, and every key would go there.
+pub(super) fn release(context: &egui::Context, app: &mut App) {
+    app.escape_taken = context.text_edit_focused() || egui::Popup::is_any_open(context);
+    if let Some(focused) = context.memory(egui::Memory::focused)
+        && !context.text_edit_focused()
+    {
+        context.memory_mut(|memory| memory.surrender_focus(focused));
+    }
+}
+
+/// Reads the keys of this frame.
 pub(super) fn read(ui: &Ui, app: &mut App, commands: &mut Vec<ViewerCommand>) {
-    if ui.ctx().egui_wants_keyboard_input() {
+    if ui.ctx().text_edit_focused() {
         app.keys = Keys { stick: app.keys.stick, triggers: app.keys.triggers, ..Keys::default() };
         return;
     }
@@ -120,9 +131,14 @@ pub(super) fn read(ui: &Ui, app: &mut App, commands: &mut Vec<ViewerCommand>) {
         }
         app.keys.buttons = buttons;
         for (key, command) in shortcuts(app) {
-            if input.key_pressed(key) {
+            // A text field or drop-down that was open takes this key for itself.
+            let taken = key == Key::Escape && app.escape_taken;
+            if input.key_pressed(key) && !taken {
                 commands.push(command);
             }
+        }
+        if app.leaving && input.key_pressed(Key::Enter) {
+            commands.push(ViewerCommand::Quit);
         }
     });
 }
@@ -131,7 +147,7 @@ pub(super) fn read(ui: &Ui, app: &mut App, commands: &mut Vec<ViewerCommand>) {
 fn shortcuts(app: &App) -> Vec<(Key, ViewerCommand)> {
     let mut shown = app.layout.shown;
     shown.collision_shapes = !shown.collision_shapes;
-    let next_mode = next(&BlendMode::ALL, app.sim.overrides.mode);
+    let next_mode = next(&BlendMode::ALL, app.sim.blend_mode());
     let ghost = match app.sim.ghost() {
         Some(_) => None,
         None => Some(next_mode),
@@ -142,7 +158,7 @@ fn shortcuts(app: &App) -> Vec<(Key, ViewerCommand)> {
         (Key::F2, ViewerCommand::Record(Record::Screenshot)),
         (Key::F3, ViewerCommand::Record(film)),
         (Key::Tab, ViewerCommand::HidePanels(!app.layout.hidden)),
-        (Key::Escape, if app.help { ViewerCommand::Help(false) } else { ViewerCommand::Quit }),
+        (Key::Escape, escape(app)),
         (Key::P, ViewerCommand::Pause(!app.clock.paused)),
         (Key::N, ViewerCommand::Step),
         (Key::B, ViewerCommand::StepBack),
@@ -155,6 +171,14 @@ fn shortcuts(app: &App) -> Vec<(Key, ViewerCommand)> {
         (Key::G, ViewerCommand::Ghost(ghost)),
         (Key::X, ViewerCommand::Shown(shown)),
     ]
+}
+
+/// Closes what is open; where nothing is, asks before leaving.
+fn escape(app: &App) -> ViewerCommand {
+    match (app.help, app.leaving) {
+        (true, _) => ViewerCommand::Help(false),
+        (_, leaving) => ViewerCommand::AskToQuit(!leaving),
+    }
 }
 
 /// The one after `current`, round and round.

@@ -1,19 +1,19 @@
 //! The sliders of the layers: one for all, or one each (the paper's section 4.3).
 
-use policy_core::{Blend, CharacterPack};
+use policy_core::{Blend, CharacterPack, NodeId};
 use serde::{Deserialize, Serialize};
 
-/// What stands in for the place on the graph.
+/// What replaces the position on the graph.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Layers {
     /// The sliders count; otherwise the triggers do.
     pub active: bool,
     /// One slider for all layers.
     pub automatic: bool,
-    /// Index of the policy where sliders are 0.
-    pub from: usize,
-    /// Index of the policy where they are 1.
-    pub to: usize,
+    /// The policy where sliders are 0.
+    pub from: NodeId,
+    /// The policy where they are 1.
+    pub to: NodeId,
     /// Hidden 1, hidden 2, output.
     pub t: [f32; 3],
     /// Name for the next preset.
@@ -38,7 +38,7 @@ impl Layers {
     /// Between the ends of the pack's first edge.
     #[must_use]
     pub fn new(pack: &CharacterPack) -> Self {
-        let [from, to] = pack.graph().edges().first().map_or([0, 0], |e| e.nodes);
+        let [from, to] = pack.graph().edges().first().map_or([NodeId::default(); 2], |e| e.nodes);
         Self { active: false, automatic: true, from, to, t: [0.0; 3], name: "my blend".into() }
     }
 
@@ -49,15 +49,15 @@ impl Layers {
             return None;
         }
         let [first, second, output] = if self.automatic { [self.t[0]; 3] } else { self.t };
-        let mut t = [output; policy_core::MAX_LAYERS];
+        let mut t = [output; policy_core::training::MAX_LAYERS];
         (t[0], t[1]) = (first, second);
-        Some(Blend::between_per_layer(self.from, self.to, t))
+        Some(Blend::between_per_layer(self.from.into(), self.to.into(), t))
     }
 
     /// The sliders as a preset of `pack`.
     #[must_use]
     pub fn preset(&self, pack: &CharacterPack) -> Preset {
-        let name = |node: usize| pack.graph().nodes()[node].name.clone();
+        let name = |node: NodeId| pack.graph().node(node).name.clone();
         let t = if self.automatic { [self.t[0]; 3] } else { self.t };
         Preset { name: self.name.clone(), from: name(self.from), to: name(self.to), t }
     }

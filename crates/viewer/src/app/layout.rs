@@ -6,7 +6,8 @@ use serde::{Deserialize, Serialize};
 
 use super::{PanelKind, Preset, Side};
 use crate::camera::CameraMode;
-use crate::stage::Shown;
+use crate::files;
+use crate::scene_setup::Shown;
 
 /// Version of the file.
 pub const LAYOUT_VERSION: u32 = 1;
@@ -16,7 +17,7 @@ const MOST_BYTES: u64 = 1 << 20;
 /// What is remembered.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub struct Layout {
+pub struct PanelLayout {
     /// [`LAYOUT_VERSION`].
     pub version: u32,
     /// Open panels from top to bottom, each with its side.
@@ -31,7 +32,7 @@ pub struct Layout {
     pub presets: Vec<Preset>,
 }
 
-impl Default for Layout {
+impl Default for PanelLayout {
     fn default() -> Self {
         Self {
             version: LAYOUT_VERSION,
@@ -50,7 +51,7 @@ impl Default for Layout {
     }
 }
 
-/// Why a layout can't be read or written. The demo then goes on with the default.
+/// Why a layout can't be read or written. The demo then uses the default.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum LayoutError {
@@ -60,7 +61,7 @@ pub enum LayoutError {
         /// The file.
         path: PathBuf,
         /// Why.
-        source: std::io::Error,
+        source: files::ReadError,
     },
     /// The text is no layout.
     #[error("layout {}: {message}", path.display())]
@@ -86,7 +87,7 @@ struct Versioned {
     version: u32,
 }
 
-impl Layout {
+impl PanelLayout {
     /// Where the user's layout is kept; `None` when the system names no such place.
     #[must_use]
     pub fn home() -> Option<PathBuf> {
@@ -104,15 +105,11 @@ impl Layout {
     pub fn load(path: &Path) -> Result<Self, LayoutError> {
         let file = |source| LayoutError::File { path: path.to_owned(), source };
         let text = |message| LayoutError::Text { path: path.to_owned(), message };
-        match std::fs::metadata(path) {
-            Err(error) if error.kind() == std::io::ErrorKind::NotFound => return Ok(Self::default()),
-            Err(error) => return Err(file(error)),
-            Ok(meta) if meta.len() > MOST_BYTES => {
-                return Err(text(format!("expected at most {MOST_BYTES} bytes, found {}", meta.len())));
-            }
-            Ok(_) => {}
+        if !path.exists() {
+            return Ok(Self::default());
         }
-        let content = std::fs::read_to_string(path).map_err(file)?;
+        let bytes = files::read(path, MOST_BYTES).map_err(file)?;
+        let content = String::from_utf8(bytes).map_err(|e| text(e.to_string()))?;
         let versioned: Versioned = ron::from_str(&content).map_err(|e| text(e.to_string()))?;
         if versioned.version != LAYOUT_VERSION {
             return Err(LayoutError::Version { path: path.to_owned(), found: versioned.version });
@@ -125,14 +122,11 @@ impl Layout {
     /// # Errors
     /// When that fails.
     pub fn save(&self, path: &Path) -> Result<(), LayoutError> {
-        let file = |source| LayoutError::File { path: path.to_owned(), source };
-        if let Some(folder) = path.parent() {
-            std::fs::create_dir_all(folder).map_err(file)?;
-        }
         let pretty = ron::ser::to_string_pretty(self, ron::ser::PrettyConfig::default());
         let content =
             pretty.map_err(|e| LayoutError::Text { path: path.to_owned(), message: e.to_string() })?;
-        std::fs::write(path, content).map_err(file)
+        files::write(path, content.as_bytes())
+            .map_err(|source| LayoutError::File { path: path.to_owned(), source: source.into() })
     }
 
     /// The side of an open panel.
@@ -162,6 +156,33 @@ impl Layout {
     }
 }
 
+/// A layout that is written whenever it has changed, so that nothing is lost when the program is killed.
+#[derive(Clone, Debug)]
+pub struct KeptLayout {
+    path: PathBuf,
+    kept: PanelLayout,
+}
+
+impl KeptLayout {
+    /// Keeps changes from `layout` on in the file `path`.
+    #[must_use]
+    pub fn new(path: PathBuf, layout: &PanelLayout) -> Self {
+        Self { path, kept: layout.clone() }
+    }
+
+    /// Writes `layout` when it has changed since the last call.
+    ///
+    /// # Errors
+    /// When it can't be written. The next change is tried again.
+    pub fn keep(&mut self, layout: &PanelLayout) -> Result<(), LayoutError> {
+        if *layout == self.kept {
+            return Ok(());
+        }
+        self.kept = layout.clone();
+        layout.save(&self.path)
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -170,7 +191,7 @@ mod tests {
     fn a_layout_comes_back_as_it_was_saved() {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("a").join("layout.ron");
-        let mut layout = Layout::default();
+        let mut layout = PanelLayout::default();
         layout.toggle(PanelKind::Analysis);
         layout.swap_side(PanelKind::Paths);
         layout.presets.push(Preset {
@@ -180,20 +201,34 @@ mod tests {
             t: [0.0, 0.5, 1.0],
         });
         layout.save(&path).unwrap();
-        assert_eq!(Layout::load(&path).unwrap(), layout);
+        assert_eq!(PanelLayout::load(&path).unwrap(), layout);
+    }
+
+    #[test]
+    fn a_change_is_written_at_once() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("layout.ron");
+        let mut layout = PanelLayout::default();
+        let mut kept = KeptLayout::new(path.clone(), &layout);
+        kept.keep(&layout).unwrap();
+        assert!(!path.exists(), "nothing has changed");
+        layout.presets.push(Preset { name: "x".into(), from: "a".into(), to: "b".into(), t: [0.5; 3] });
+        kept.keep(&layout).unwrap();
+        assert_eq!(PanelLayout::load(&path).unwrap(), layout);
     }
 
     #[test]
     fn another_version_and_nonsense_are_refused_by_name() {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("layout.ron");
-        assert_eq!(Layout::load(&path).unwrap(), Layout::default());
+        assert_eq!(PanelLayout::load(&path).unwrap(), PanelLayout::default());
         std::fs::write(&path, "(version: 99, docks: [])").unwrap();
-        let error = Layout::load(&path).unwrap_err().to_string();
+        let error = PanelLayout::load(&path).unwrap_err().to_string();
         assert!(error.contains("layout.ron") && error.contains("expected version 1, found 99"), "{error}");
         std::fs::write(&path, "(version: 1, oben: 3)").unwrap();
-        assert!(matches!(Layout::load(&path), Err(LayoutError::Text { .. })));
+        assert!(matches!(PanelLayout::load(&path), Err(LayoutError::Text { .. })));
         std::fs::write(&path, [0xff, 0xfe, 0]).unwrap();
-        assert!(matches!(Layout::load(&path), Err(LayoutError::File { .. })));
+        assert!(matches!(PanelLayout::load(&path), Err(LayoutError::Text { .. })));
+        assert!(matches!(PanelLayout::load(folder.path()), Err(LayoutError::File { .. })));
     }
 }

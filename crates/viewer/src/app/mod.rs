@@ -11,29 +11,36 @@ mod layers;
 mod layout;
 mod panel_kind;
 mod pick;
+mod place;
 mod plots;
 
 use std::sync::mpsc::Receiver;
 
 use egui::Ui;
-use policy_core::{Body, GamepadState};
+use policy_core::{Button, GamepadState};
 
 use crate::analysis::Analysis;
 use crate::camera::Camera;
 use crate::panels;
 use crate::render::Scene;
-use crate::sim::{Blowup, Playback, Simulation, TICK_SECS};
-use crate::stage::{Trail, set_scene};
+use crate::scene_setup::{Trail, set_scene};
+use crate::sim::{Divergence, Playback, Simulation};
 pub use clock::Clock;
 pub use command::{Record, ViewerCommand};
 pub use keys::{KEYS, Keys, PAD};
 pub use layers::{Layers, Preset};
-pub use layout::{LAYOUT_VERSION, Layout, LayoutError};
+pub use layout::{KeptLayout, LAYOUT_VERSION, LayoutError, PanelLayout};
 pub use panel_kind::{PanelKind, Side};
 pub use pick::Grab;
+pub use place::place;
 pub use plots::{Plots, Series};
 
-/// What is known of pads, filled in by whoever reads them.
+/// How far a trigger has to be pulled to take over from a panel.
+const TRIGGER_MOVES: f32 = 0.1;
+/// The button that acts as the third trigger.
+const STYLE_BUTTON: Button = Button::RightShoulder;
+
+/// What is known of pads, filled in by the reader of the pads.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct PadView {
     /// Name of the active pad and its back end.
@@ -51,8 +58,8 @@ pub struct PadView {
 pub struct Failure {
     /// What happened.
     pub what: String,
-    /// Where the state before it was written.
-    pub dump: Option<String>,
+    /// The replay file: the state before it.
+    pub replay: Option<String>,
 }
 
 /// The demo.
@@ -67,7 +74,7 @@ pub struct App {
     /// The way walked.
     pub trail: Trail,
     /// Open panels, toggles, presets: what is remembered.
-    pub layout: Layout,
+    pub layout: PanelLayout,
     /// Sliders of the layers.
     pub layers: Layers,
     /// Pads.
@@ -86,17 +93,25 @@ pub struct App {
     pub grab: Option<Grab>,
     /// True while the help overlay is open.
     pub help: bool,
-    /// What the recorder is to do at the next frame; whoever draws takes it.
+    /// What the recorder is to do at the next frame; the frame composer takes it.
     pub record: Option<Record>,
     /// What is being recorded.
     pub recording: Option<String>,
     /// Name of the adapter, for the profiler.
     pub adapter: String,
+    /// True while it asks whether to leave.
+    pub leaving: bool,
     /// True when it is time to leave.
     pub quit: bool,
-    /// The ground has changed: whoever draws uploads it and clears this.
+    /// False when there is no mesh to draw: then collision shapes are drawn.
+    pub has_mesh: bool,
+    /// A text field or drop-down was open in the last frame: the Escape key closes that.
+    escape_taken: bool,
+    /// The triggers when a panel took over from them.
+    overridden_at: GamepadState,
+    /// The ground has changed: the frame composer uploads it and clears this.
     pub ground_changed: bool,
-    /// A file that was dropped on the window; whoever draws loads it.
+    /// A file that was dropped on the window; the frame composer opens it.
     pub dropped: Option<std::path::PathBuf>,
     analysis_soon: Option<Receiver<Analysis>>,
 }
@@ -104,15 +119,16 @@ pub struct App {
 impl App {
     /// The demo of a world.
     #[must_use]
-    pub fn new(sim: Simulation, layout: Layout) -> Self {
+    pub fn new(sim: Simulation, layout: PanelLayout) -> Self {
         let mut camera = Camera::default();
         camera.mode = layout.camera;
         let player = sim.player();
-        camera.settle(player.state.body(Body::Pelvis).position, player.state.ground_height);
+        camera.set_size(player.state.root_height());
+        camera.settle(player.state.root().position, player.state.ground_height);
         Self {
             layers: Layers::new(sim.pack()),
+            clock: Clock::new(sim.tick_secs()),
             sim,
-            clock: Clock::default(),
             camera,
             trail: Trail::default(),
             layout,
@@ -127,7 +143,11 @@ impl App {
             record: None,
             recording: None,
             adapter: String::new(),
+            leaving: false,
             quit: false,
+            has_mesh: true,
+            escape_taken: false,
+            overridden_at: GamepadState::default(),
             ground_changed: true,
             dropped: None,
             analysis_soon: None,
@@ -153,8 +173,8 @@ impl App {
         }
         if self.failure.is_none() {
             for _ in 0..self.clock.ticks_due(dt) {
-                if let Some(blowup) = self.tick().first() {
-                    self.fail(blowup);
+                if let Some(divergence) = self.tick().first() {
+                    self.fail(divergence);
                     break;
                 }
             }
@@ -162,21 +182,22 @@ impl App {
         self.follow(dt.min(0.1), self.alpha());
     }
 
-    /// The camera takes `dt` seconds to follow the player, who is `alpha` of the way into the last tick.
+    /// The camera takes `dt` seconds to follow the player, which is `alpha` of the way into the last tick.
     pub fn follow(&mut self, dt: f32, alpha: f32) {
         let input = self.input();
         let player = self.sim.player();
-        let pelvis = self.sim.poses(0, alpha).positions[0];
+        let root = self.sim.poses(0, alpha).positions[0];
         let (heading, ground) = (player.heading(), player.state.ground_height);
-        self.camera.advance(dt, input.right_stick, pelvis, heading, ground);
+        self.camera.advance(dt, input.right_stick, root, heading, ground);
     }
 
-    /// One tick of the world. Characters that blew up are in their state before it.
-    pub fn tick(&mut self) -> Vec<Blowup> {
+    /// One tick of the world. Characters whose physics diverged are in their state before it.
+    pub fn tick(&mut self) -> Vec<Divergence> {
         self.pull();
         let input = self.input();
+        self.give_back_to_triggers(&input);
         self.sim.overrides.blend = self.layers.blend();
-        let blowups = self.sim.tick(&input, self.camera.heading());
+        let divergences = self.sim.tick(&input, self.camera.heading());
         if self.sim.playback().is_some_and(Playback::has_restarted) {
             self.trail.clear();
         }
@@ -185,7 +206,7 @@ impl App {
         if let Some(analysis) = &mut self.analysis {
             analysis.follow(self.sim.player());
         }
-        blowups
+        divergences
     }
 
     /// Between the last tick but one and the last, where the picture is.
@@ -196,8 +217,9 @@ impl App {
 
     /// Sets the scene for the next picture.
     pub fn set_scene(&self, scene: &mut Scene, around: f32) {
-        let how = (self.alpha(), &self.layout.shown, &self.trail);
-        set_scene(scene, &self.sim, &self.camera, around, how);
+        let mut shown = self.layout.shown;
+        shown.collision_shapes |= !self.has_mesh;
+        set_scene(scene, &self.sim, &self.camera, around, (self.alpha(), &shown, &self.trail));
         if let Some(grab) = &self.grab {
             let from = self.sim.poses(0, self.alpha()).positions[grab.body.index()];
             scene.arrow(from, from + grab.pull, 0.012, [0.95, 0.3, 0.1, 1.0]);
@@ -213,13 +235,27 @@ impl App {
         for command in commands {
             self.apply(command);
         }
+        keys::release(ui.ctx(), self);
     }
 
-    fn fail(&mut self, blowup: &Blowup) {
+    /// A trigger that is pulled takes over again from what a panel asked for.
+    fn give_back_to_triggers(&mut self, input: &GamepadState) {
+        let then = &mut self.overridden_at;
+        then.left_trigger = then.left_trigger.min(input.left_trigger);
+        then.right_trigger = then.right_trigger.min(input.right_trigger);
+        let pulled = input.left_trigger > then.left_trigger + TRIGGER_MOVES
+            || input.right_trigger > then.right_trigger + TRIGGER_MOVES;
+        if pulled || input.buttons.pressed_since(then.buttons).contains(STYLE_BUTTON) {
+            self.sim.overrides.goal = None;
+        }
+        then.buttons = input.buttons;
+    }
+
+    fn fail(&mut self, divergence: &Divergence) {
         let path = std::env::temp_dir().join("policy-space-diverged.json");
-        let dump = blowup.dump.save(&path).is_ok().then(|| path.display().to_string());
-        self.failure =
-            Some(Failure { what: format!("character {}: {}", blowup.character, blowup.what), dump });
+        let replay = divergence.replay.save(&path).is_ok().then(|| path.display().to_string());
+        let what = format!("character {}: {}", divergence.character, divergence.what);
+        self.failure = Some(Failure { what, replay });
     }
 
     /// Pulls the body that the mouse holds.
@@ -227,7 +263,8 @@ impl App {
         if let Some(grab) = &self.grab {
             let (body, force) = (grab.body, grab.force());
             // A force that is out of range is not worth stopping for: the next frame brings another.
-            let _ = self.sim.character_mut(0).push(body, force, TICK_SECS);
+            let secs = self.sim.tick_secs();
+            let _ = self.sim.character_mut(0).push(body, force, secs);
         }
     }
 }

@@ -1,8 +1,9 @@
 //! The mouse in the picture: turns the camera, pulls bodies.
 
 use egui::{PointerButton, Rect, Ui};
-use glam::{Vec2, Vec3};
-use policy_core::Body;
+use glam::{Affine3A, Vec2, Vec3};
+use physics_bridge::ShapeKind;
+use policy_core::BodyId;
 
 use super::{App, ViewerCommand};
 use crate::render::View;
@@ -11,7 +12,7 @@ use crate::render::View;
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Grab {
     /// The body.
-    pub body: Body,
+    pub body: BodyId,
     /// From the body to the mouse, world space, metres.
     pub pull: Vec3,
 }
@@ -19,8 +20,8 @@ pub struct Grab {
 /// Newtons for each metre of pull, and at most.
 const STIFFNESS: f32 = 500.0;
 const STRONGEST: f32 = 800.0;
-/// How near to a body the mouse must be, metres.
-const REACH: f32 = 0.16;
+/// How near to a shape of a body the mouse must be, metres.
+const REACH: f32 = 0.015;
 
 impl Grab {
     /// Force on the body, newtons, world space.
@@ -30,28 +31,26 @@ impl Grab {
     }
 }
 
-/// Takes in the mouse over `free`, the part of the window that no panel covers.
+/// Reads the mouse over `free`, the part of the window that no panel covers.
 pub(super) fn read(ui: &mut Ui, app: &App, free: Rect, around: f32, commands: &mut Vec<ViewerCommand>) {
     let screen = ui.ctx().content_rect();
     let response = ui.interact(free, ui.scope_id().with("picture"), egui::Sense::click_and_drag());
-    let turning = response.dragged_by(PointerButton::Secondary) || response.dragged_by(PointerButton::Middle);
-    if turning || (response.dragged_by(PointerButton::Primary) && app.grab.is_none()) {
-        let by = response.drag_delta();
-        commands.push(ViewerCommand::Turn(Vec2::new(by.x, by.y) * 0.006));
-    }
     if response.hovered() {
         let scroll = ui.input(|input| input.smooth_scroll_delta.y);
         if scroll != 0.0 {
             commands.push(ViewerCommand::Zoom((-scroll * 0.0025).exp()));
         }
     }
-    let pointer = ui.input(|input| input.pointer.interact_pos());
+    let (pointer, pressed) = ui.input(|input| (input.pointer.interact_pos(), input.pointer.press_origin()));
     let view = app.camera.view(around);
+    let mut held = app.grab.is_some();
     match (&app.grab, pointer) {
-        (None, Some(at)) if response.drag_started_by(PointerButton::Primary) => {
-            let ray = Ray::through(&view, screen, at);
-            let grab = nearest_body(app, &ray).map(|body| Grab { body, pull: Vec3::ZERO });
-            commands.push(ViewerCommand::Grab(grab));
+        (None, Some(_)) if response.drag_started_by(PointerButton::Primary) => {
+            // Where the button went down counts, not where the mouse is by the time that it is a drag.
+            let ray = pressed.map(|at| Ray::through(&view, screen, at));
+            let body = ray.and_then(|ray| nearest_body(app, &ray));
+            held = body.is_some();
+            commands.push(ViewerCommand::Grab(body.map(|body| Grab { body, pull: Vec3::ZERO })));
         }
         (Some(grab), Some(at)) if response.dragged_by(PointerButton::Primary) => {
             let from = app.sim.poses(0, app.alpha()).positions[grab.body.index()];
@@ -60,6 +59,11 @@ pub(super) fn read(ui: &mut Ui, app: &App, free: Rect, around: f32, commands: &m
         }
         (Some(_), _) => commands.push(ViewerCommand::Grab(None)),
         _ => {}
+    }
+    let turning = response.dragged_by(PointerButton::Secondary) || response.dragged_by(PointerButton::Middle);
+    if turning || (response.dragged_by(PointerButton::Primary) && !held) {
+        let by = response.drag_delta();
+        commands.push(ViewerCommand::Turn(Vec2::new(by.x, by.y) * 0.006));
     }
 }
 
@@ -80,6 +84,41 @@ impl Ray {
         Self { from: view.eye, along: (far - view.eye).normalize_or(Vec3::X) }
     }
 
+    /// How far along the line it passes a shape, in the frame of that shape; `None` when it misses it by more than
+    /// [`REACH`].
+    fn meets(&self, kind: &ShapeKind) -> Option<f32> {
+        match *kind {
+            ShapeKind::Sphere { radius } => self.passes(Vec3::ZERO, Vec3::ZERO, radius),
+            ShapeKind::Capsule { radius, half_length } => {
+                let end = Vec3::Z * half_length;
+                self.passes(-end, end, radius)
+            }
+            ShapeKind::Cuboid { half_extents } => self.enters(half_extents + Vec3::splat(REACH)),
+            _ => None,
+        }
+    }
+
+    /// The nearest points of the line and of the segment from `a` to `b` are within `radius` and the reach.
+    fn passes(&self, a: Vec3, b: Vec3, radius: f32) -> Option<f32> {
+        let (segment, to) = (b - a, a - self.from);
+        let (d, e) = (self.along.dot(segment), self.along.dot(to));
+        let steepness = segment.length_squared() - d * d;
+        let share =
+            if steepness > 1e-9 { ((d * e - segment.dot(to)) / steepness).clamp(0.0, 1.0) } else { 0.0 };
+        let point = a + segment * share;
+        let depth = (point - self.from).dot(self.along);
+        let apart = (self.from + self.along * depth).distance(point);
+        (depth > 0.0 && apart < radius + REACH).then_some(depth)
+    }
+
+    /// The line enters the box about the origin.
+    fn enters(&self, half_extents: Vec3) -> Option<f32> {
+        let per_axis = self.along.recip();
+        let (one, other) = ((-half_extents - self.from) * per_axis, (half_extents - self.from) * per_axis);
+        let (near, far) = (one.min(other).max_element(), one.max(other).min_element());
+        (near <= far && near > 0.0).then_some(near)
+    }
+
     /// The point of the line as deep in the picture as `point`.
     fn at_depth_of(&self, point: Vec3, view: &View) -> Vec3 {
         let forward = (view.target - view.eye).normalize_or(Vec3::X);
@@ -88,16 +127,29 @@ impl Ray {
     }
 }
 
-fn nearest_body(app: &App, ray: &Ray) -> Option<Body> {
+/// The body of the player whose shape the ray meets first, or passes within [`REACH`] of.
+fn nearest_body(app: &App, ray: &Ray) -> Option<BodyId> {
     // A clip can't be pulled at: the mouse turns the camera.
     if app.sim.playback().is_some() {
         return None;
     }
     let poses = app.sim.poses(0, app.alpha());
-    let distance = |body: &Body| {
-        let to = poses.positions[body.index()] - ray.from;
-        (to - ray.along * to.dot(ray.along)).length()
-    };
-    let best = Body::ALL.into_iter().min_by(|a, b| distance(a).total_cmp(&distance(b)))?;
-    (distance(&best) < REACH).then_some(best)
+    let mut nearest: Option<(f32, BodyId)> = None;
+    for shape in app.sim.model().shapes() {
+        let i = shape.body.index();
+        let world_from_body = Affine3A::from_rotation_translation(poses.rotations[i], poses.positions[i]);
+        let world_from_shape =
+            world_from_body * Affine3A::from_rotation_translation(shape.rotation, shape.position);
+        let shape_from_world = world_from_shape.inverse();
+        let local = Ray {
+            from: shape_from_world.transform_point3(ray.from),
+            along: shape_from_world.transform_vector3(ray.along),
+        };
+        if let Some(depth) = local.meets(&shape.kind)
+            && nearest.is_none_or(|(best, _)| depth < best)
+        {
+            nearest = Some((depth, shape.body));
+        }
+    }
+    nearest.map(|(_, body)| body)
 }

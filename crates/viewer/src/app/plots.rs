@@ -58,7 +58,7 @@ pub struct Plots {
 }
 
 impl Plots {
-    /// Takes in a tick.
+    /// Adds the numbers of a tick.
     pub fn tick(&mut self, sim: &Simulation) {
         let times = sim.times();
         let policy = times.policy.as_secs_f32() * 1e3;
@@ -68,7 +68,7 @@ impl Plots {
         self.score.push(sim.player().report().skill.and_then(|s| s.score).unwrap_or(0.0));
     }
 
-    /// Takes in a frame, milliseconds.
+    /// Adds the times of a frame, milliseconds.
     pub fn frame(&mut self, draw: f32, ui: f32) {
         self.draw.push(draw);
         self.ui.push(ui);

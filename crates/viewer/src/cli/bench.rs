@@ -5,19 +5,16 @@ use std::time::{Duration, Instant};
 
 use anyhow::Context as _;
 use glam::Vec2;
-use physics_bridge::{CONTROL_HZ, Character, Crowd, Model};
-use policy_core::{
-    Arithmetic, Command, Controller, ControllerConfig, Goal, GraphPosition, Heading, JointTargets,
-};
+use physics_bridge::{Character, Crowd};
+use policy_core::{Arithmetic, Command, Controller, ControllerConfig, Goal, Heading, JointTargets};
 use serde_json::json;
 
 use super::{Bench, load};
-use crate::assets;
 use crate::camera::Camera;
 use crate::gpu::Gpu;
 use crate::render::{OffScreen, RenderConfig, Renderer, Scene};
-use crate::sim::{SimConfig, Simulation, TICK_SECS};
-use crate::stage::{Shown, Trail, set_scene};
+use crate::scene_setup::{Shown, Trail, set_scene};
+use crate::sim::{SimConfig, Simulation, model_of};
 
 /// Characters in the crowd that is timed.
 const CROWD: usize = 64;
@@ -26,20 +23,13 @@ const ROUNDS: usize = 60;
 /// Control ticks a round.
 const TICKS: usize = 5;
 
-/// A walking character's mind and what it cost.
-struct Mind {
-    controller: Controller,
-    command: Command,
-    spent: Duration,
-}
-
-/// Characters that run in real time with controllers, and without: the fastest round of each.
+/// Characters that run in real time with controllers, and without: the fastest round of each, as text.
 ///
 /// # Errors
-/// When the pack or the humanoid is broken.
-pub fn crowd(bench: Bench) -> anyhow::Result<()> {
+/// When the pack or its body is broken.
+pub fn crowd(bench: Bench) -> anyhow::Result<String> {
     let pack = load::pack(None)?;
-    let model = Model::from_mjcf(assets::HUMANOID_MJCF)?;
+    let model = model_of(&pack)?;
     let walk = pack.graph().node_named("walk").context("the pack has no policy called walk")?;
     let stand = |index: usize| -> anyhow::Result<Character> {
         let mut character = Character::new(&model);
@@ -51,39 +41,32 @@ pub fn crowd(bench: Bench) -> anyhow::Result<()> {
     let mut crowd = Crowd::new(characters, None)?;
     let config =
         ControllerConfig { arithmetic: Arithmetic::Fused, start: walk, ..ControllerConfig::default() };
-    let mut minds: Vec<Mind> = (0..CROWD)
-        .map(|index| Mind {
-            controller: Controller::with_config(Arc::clone(&pack), config),
-            command: Command {
-                target: Some(Vec2::new(3.0 * index as f32, 0.0) + Vec2::from_angle(index as f32) * 1000.0),
-                goal: Goal::Node(walk),
-                ..Command::default()
-            },
-            spent: Duration::ZERO,
-        })
-        .collect();
-    minds.iter_mut().for_each(|m| m.controller.place_at(GraphPosition::node(walk)));
-    let mut targets = vec![JointTargets::default(); CROWD];
+    let mut controllers = vec![Controller::with_config(Arc::clone(&pack), config); CROWD];
+    let command = |index: usize| Command {
+        target: Some(Vec2::new(3.0 * index as f32, 0.0) + Vec2::from_angle(index as f32) * 1000.0),
+        goal: Goal::Node(walk),
+        ..Command::default()
+    };
+    let commands: Vec<Command> = (0..CROWD).map(command).collect();
+    let tick_secs = 1.0 / model.control_hz();
+    let mut targets = vec![JointTargets::new(model.skeleton()); CROWD];
     let (mut best_full, mut best_bare, mut share) = (f64::INFINITY, f64::INFINITY, 1.0);
     for _ in 0..ROUNDS {
-        minds.iter_mut().for_each(|m| m.spent = Duration::ZERO);
+        let mut policy = Duration::ZERO;
         let start = Instant::now();
         for _ in 0..TICKS {
-            crowd.tick_with(&mut minds, |_, mind, state, targets| {
-                let start = Instant::now();
-                *targets = *mind.controller.tick(state, &mind.command, TICK_SECS);
-                mind.spent += start.elapsed();
-            });
+            crowd.control_tick(&mut controllers, &commands, tick_secs);
+            policy += crowd.control_time();
         }
         let full = start.elapsed().as_secs_f64();
         if full < best_full {
-            let policy: f64 = minds.iter().map(|m| m.spent.as_secs_f64()).sum();
-            (best_full, share) = (full, policy / (full * crowd.threads() as f64));
+            (best_full, share) = (full, policy.as_secs_f64() / (full * crowd.threads() as f64));
         }
-        // The same walk again without minds: from the same states, held by the same targets.
-        let (snapshots, held): (Vec<_>, Vec<_>) =
-            crowd.characters().zip(&minds).map(|(c, m)| (c.save(), *m.controller.joint_targets())).unzip();
-        targets.copy_from_slice(&held);
+        // The same walk again without controllers: from the same states, held by the same targets.
+        let snapshots: Vec<_> = crowd.characters().map(Character::save).collect();
+        for (target, controller) in targets.iter_mut().zip(&controllers) {
+            target.copy_from_slice(controller.joint_targets());
+        }
         let start = Instant::now();
         for _ in 0..TICKS {
             crowd.step(&targets);
@@ -93,45 +76,51 @@ pub fn crowd(bench: Bench) -> anyhow::Result<()> {
             character.restore(snapshot)?;
         }
     }
-    let realtime = |secs: f64| (CROWD * TICKS) as f64 / secs / f64::from(CONTROL_HZ);
+    let realtime = |secs: f64| (CROWD * TICKS) as f64 / secs / f64::from(model.control_hz());
     let (full, bare) = (realtime(best_full), realtime(best_bare));
     if bench.json {
         let object =
             json!({ "characters_realtime": full, "bare_mujoco_characters": bare, "policy_share": share });
-        println!("{object}");
-    } else {
-        println!("characters in real time, 30 Hz control, 120 Hz physics, {} threads", crowd.threads());
-        println!("  with controllers     {full:8.0}");
-        println!("  stepping alone       {bare:8.0}   ({:.1} %)", 100.0 * full / bare);
-        println!("  share of the policy  {:8.2} %", 100.0 * share);
+        return Ok(object.to_string());
     }
-    Ok(())
+    Ok(format!(
+        "characters in real time, {:.0} Hz control, {:.0} Hz physics, {} threads
+  with controllers     {full:8.0}
+  stepping alone       {bare:8.0}   ({:.1} %)
+  share of the policy  {:8.2} %",
+        model.control_hz(),
+        1.0 / model.timestep_secs(),
+        crowd.threads(),
+        100.0 * full / bare,
+        100.0 * share,
+    ))
 }
 
-/// Pictures a second off screen at 1280x720.
+/// Pictures a second off screen at 1280x720, as text.
 ///
 /// # Errors
 /// When there is nothing to draw with.
-pub fn frame(bench: Bench) -> anyhow::Result<()> {
+pub fn frame(bench: Bench) -> anyhow::Result<String> {
     let gpu = Gpu::off_screen()?;
     let one = frames_per_second(&gpu, 1)?;
     let hundred = frames_per_second(&gpu, 100)?;
     if bench.json {
-        println!("{}", json!({ "fps_1": one, "fps_100": hundred, "adapter": gpu.adapter_name }));
-    } else {
-        println!("pictures a second at 1280x720, 4x MSAA, drawn by {}", gpu.adapter_name);
-        println!("  1 character     {one:8.1}");
-        println!("  100 characters  {hundred:8.1}");
+        return Ok(json!({ "fps_1": one, "fps_100": hundred, "adapter": gpu.adapter_name }).to_string());
     }
-    Ok(())
+    Ok(format!(
+        "pictures a second at 1280x720, 4x MSAA, drawn by {}
+  1 character     {one:8.1}
+  100 characters  {hundred:8.1}",
+        gpu.adapter_name,
+    ))
 }
 
 fn frames_per_second(gpu: &Gpu, characters: usize) -> anyhow::Result<f64> {
     let config = SimConfig { characters, ..SimConfig::default() };
-    let mut sim = Simulation::new(assets::HUMANOID_MJCF, load::pack(None)?, config)?;
-    let (mesh, _) = load::mesh(None)?;
+    let mut sim = Simulation::new(load::pack(None)?, config)?;
+    let (appearance, _) = load::appearance(None, sim.pack(), sim.model());
     let config = RenderConfig::for_adapter(gpu.is_software);
-    let mut renderer = Renderer::new(gpu, OffScreen::FORMAT, config, mesh);
+    let mut renderer = Renderer::new(gpu, OffScreen::FORMAT, config, appearance);
     let target = OffScreen::new(gpu, [1280, 720]);
     let mut camera = Camera::default();
     if characters > 1 {

@@ -5,17 +5,19 @@ use std::time::Instant;
 
 use anyhow::{Context as _, bail};
 
-use super::Demo;
 use super::open::open;
 use super::pad_input::PadInput;
 use super::report::Report;
+use super::{Demo, MOST_SECS};
 use crate::analysis::Analysis;
 use crate::app::App;
-use crate::desk::Desk;
+use crate::files;
+use crate::frame_composer::FrameComposer;
 use crate::gpu::Gpu;
-use crate::mesh::SkinnedMesh;
-use crate::render::{OffScreen, RenderConfig};
-use crate::sim::{Blowup, LIE_SECS, Playback, TICK_SECS};
+use crate::recorder;
+use crate::render::{Appearance, OffScreen, RenderConfig};
+use crate::signals::{self, Signal};
+use crate::sim::{Divergence, LIE_SECS, Playback};
 
 /// Runs the demo without a window.
 ///
@@ -25,7 +27,7 @@ pub fn run(demo: &Demo) -> anyhow::Result<Report> {
     let report = Headless::through(demo)?.report();
     if let Some(path) = &demo.report {
         let text = serde_json::to_string_pretty(&report).context("report")? + "\n";
-        write(path, text.as_bytes())?;
+        files::write(path, text.as_bytes()).with_context(|| format!("cannot write {}", path.display()))?;
     }
     Ok(report)
 }
@@ -65,17 +67,24 @@ struct Headless<'a> {
     app: App,
     input: PadInput,
     seconds: f64,
+    ended_by: Option<Signal>,
     painter: Option<Painter>,
-    blowups: usize,
-    dumps: Vec<String>,
+    divergences: usize,
+    replays: Vec<String>,
 }
 
 impl<'a> Headless<'a> {
     /// A whole run.
     fn through(demo: &'a Demo) -> anyhow::Result<Self> {
         let mut run = Self::new(demo)?;
-        let ticks = (run.seconds / f64::from(TICK_SECS)).round().max(1.0) as u64;
+        let tick_secs = run.tick_secs();
+        let ticks = (run.seconds / tick_secs).round().max(1.0) as u64;
         for tick in 0..ticks {
+            run.ended_by = signals::received();
+            if run.ended_by.is_some() {
+                run.seconds = tick as f64 * tick_secs;
+                break;
+            }
             run.tick(tick)?;
         }
         Ok(run)
@@ -87,6 +96,11 @@ impl<'a> Headless<'a> {
         let mut app = opened.app;
         let clip = app.sim.playback().map(Playback::duration);
         let seconds = demo.seconds.or(clip).or(input.duration()).unwrap_or(10.0);
+        if seconds > MOST_SECS {
+            bail!(
+                "expected a script or recording of at most {MOST_SECS} s, found {seconds} s; --seconds plays a part"
+            );
+        }
         if let Some(complaint) = app.notice.take() {
             bail!("{complaint}");
         }
@@ -94,19 +108,24 @@ impl<'a> Headless<'a> {
             app.analysis = Analysis::of(app.sim.pack());
         }
         let painter = match &demo.frames {
-            Some(folder) => Some(Painter::new(demo, folder, opened.mesh, &mut app)?),
+            Some(folder) => Some(Painter::new(demo, folder, opened.appearance, &mut app)?),
             None => None,
         };
-        Ok(Self { demo, app, input, seconds, painter, blowups: 0, dumps: Vec::new() })
+        Ok(Self { demo, app, input, seconds, ended_by: None, painter, divergences: 0, replays: Vec::new() })
+    }
+
+    fn tick_secs(&self) -> f64 {
+        self.app.sim.tick_secs().into()
     }
 
     fn tick(&mut self, tick: u64) -> anyhow::Result<()> {
-        let start = tick as f64 * f64::from(TICK_SECS);
+        let tick_secs = self.tick_secs();
+        let start = tick as f64 * tick_secs;
         let pad = self.input.state_at(start);
         (self.app.pad.raw, self.app.pad.state) = (pad, pad);
-        for blowup in self.app.tick() {
-            self.keep(&blowup)?;
-            self.app.sim.stand_up(blowup.character);
+        for divergence in self.app.tick() {
+            self.keep(&divergence)?;
+            self.app.sim.stand_up(divergence.character);
         }
         if self.demo.trace && tick.is_multiple_of(15) {
             super::trace(&self.app);
@@ -116,45 +135,49 @@ impl<'a> Headless<'a> {
             // Pictures that fall into this tick, each between its two ends.
             loop {
                 let due = painter.drawn as f64 / f64::from(self.demo.fps);
-                let alpha = ((due - start) / f64::from(TICK_SECS)) as f32;
+                let alpha = ((due - start) / tick_secs) as f32;
                 if alpha > 1.0 - 1e-4 {
                     break;
                 }
                 let alpha = alpha.max(0.0);
-                self.app.follow((alpha - last) * TICK_SECS, alpha);
+                self.app.follow((alpha - last) * tick_secs as f32, alpha);
                 painter.paint(&mut self.app, alpha)?;
                 last = alpha;
             }
         }
-        self.app.follow((1.0 - last) * TICK_SECS, 1.0);
+        self.app.follow((1.0 - last) * tick_secs as f32, 1.0);
         Ok(())
     }
 
     /// Saves the state before a divergence beside the report.
-    fn keep(&mut self, blowup: &Blowup) -> anyhow::Result<()> {
-        self.blowups += 1;
+    fn keep(&mut self, divergence: &Divergence) -> anyhow::Result<()> {
+        self.divergences += 1;
         // Ten tell the story; a run that diverges every tick must not fill the disk.
-        if self.dumps.len() < 10
+        if self.replays.len() < 10
             && let Some(report) = &self.demo.report
         {
-            let path = report.with_extension(format!("diverged{}.json", self.dumps.len()));
-            blowup.dump.save(&path).with_context(|| format!("dump of {}", blowup.what))?;
-            self.dumps.push(path.display().to_string());
+            let path = report.with_extension(format!("diverged{}.json", self.replays.len()));
+            divergence.replay.save(&path).with_context(|| format!("replay file of {}", divergence.what))?;
+            self.replays.push(path.display().to_string());
         }
         Ok(())
     }
 
     fn report(self) -> Report {
         let totals = self.app.sim.totals();
-        let characters = self.app.sim.actors().len();
-        let ticks = totals.character_ticks as f64;
+        let characters = self.app.sim.characters().len();
+        // A run that a signal ended before its first tick has nothing to divide by.
+        let ticks = (totals.character_ticks as f64).max(1.0);
         let distance_m = totals.distance_m / characters as f64;
         let after_a_fall = match self.app.sim.pack().recovery() {
-            Some(skill) => format!("the skill {} is started", self.app.sim.pack().skills()[skill].name),
-            None => format!("no skill to rise in the pack: stood up after {LIE_SECS} s"),
+            Some(skill) => {
+                format!("the skill {} is started", self.app.sim.pack().skills()[skill.index()].name)
+            }
+            None => format!("no skill to get up in the pack: stood up after {LIE_SECS} s"),
         };
         Report {
             seconds: self.seconds,
+            ended_by: self.ended_by.map(|signal| signal.name),
             characters,
             mode: self.demo.mode.name(),
             terrain: self.demo.terrain.name(),
@@ -164,9 +187,9 @@ impl<'a> Headless<'a> {
             falls: totals.falls,
             after_a_fall,
             stood_up: totals.stood_up,
-            diverged: self.blowups,
-            dumps: self.dumps,
-            mean_speed_mps: distance_m / self.seconds,
+            diverged: self.divergences,
+            replays: self.replays,
+            mean_speed_mps: distance_m / self.seconds.max(self.app.sim.tick_secs().into()),
             control_ticks_per_second: ticks / totals.whole.as_secs_f64().max(1e-9),
             policy_microseconds_per_tick: totals.policy.as_secs_f64() * 1e6 / ticks,
             state_hash: totals.hash.to_string(),
@@ -178,7 +201,7 @@ impl<'a> Headless<'a> {
 
 /// Draws pictures into a folder.
 struct Painter {
-    desk: Desk,
+    composer: FrameComposer,
     size: [u32; 2],
     panels: bool,
     around: f32,
@@ -187,15 +210,15 @@ struct Painter {
 }
 
 impl Painter {
-    fn new(demo: &Demo, folder: &Path, mesh: SkinnedMesh, app: &mut App) -> anyhow::Result<Self> {
+    fn new(demo: &Demo, folder: &Path, appearance: Appearance, app: &mut App) -> anyhow::Result<Self> {
         std::fs::create_dir_all(folder)
             .with_context(|| format!("cannot make the folder {}", folder.display()))?;
         let gpu = Gpu::off_screen()?;
         app.adapter.clone_from(&gpu.adapter_name);
-        // Nobody waits for these: full quality whatever draws them.
+        // Time does not matter here: full quality, whatever draws.
         let config = RenderConfig { shadow_size: 2048, shadow_taps: 16, ..RenderConfig::default() };
         Ok(Self {
-            desk: Desk::with_config(&gpu, OffScreen::FORMAT, config, mesh),
+            composer: FrameComposer::with_config(&gpu, OffScreen::FORMAT, config, appearance),
             size: demo.size,
             panels: demo.panels.is_some(),
             around: demo.view_angle.to_radians(),
@@ -214,20 +237,12 @@ impl Painter {
             time: Some(self.drawn as f64 / 30.0),
             ..Default::default()
         };
-        let output = self.desk.panels(app, input, self.around);
-        let picture = self.desk.picture(app, output, self.size, self.panels)?;
+        let output = self.composer.panels(app, input, self.around);
+        let picture = self.composer.picture(app, output, self.size, self.panels)?;
         app.plots.draw.push(start.elapsed().as_secs_f32() * 1e3);
         let path = self.folder.join(format!("frame_{:05}.png", self.drawn));
-        picture.save(&path).with_context(|| format!("cannot write {}", path.display()))?;
+        recorder::save(&picture, &path)?;
         self.drawn += 1;
         Ok(())
     }
-}
-
-fn write(path: &Path, bytes: &[u8]) -> anyhow::Result<()> {
-    if let Some(folder) = path.parent().filter(|p| !p.as_os_str().is_empty()) {
-        std::fs::create_dir_all(folder)
-            .with_context(|| format!("cannot make the folder {}", folder.display()))?;
-    }
-    std::fs::write(path, bytes).with_context(|| format!("cannot write {}", path.display()))
 }

@@ -1,13 +1,18 @@
-//! Reads what the command line names: pack, mesh, script.
+//! Reads what the command line names: pack and mesh.
 
 use std::path::Path;
 use std::sync::Arc;
 
 use anyhow::Context as _;
+use physics_bridge::Model;
 use policy_core::CharacterPack;
 
+use crate::appearance;
 use crate::assets;
+use crate::dropped::MAX_DROPPED_BYTES;
+use crate::files;
 use crate::mesh::SkinnedMesh;
+use crate::render::Appearance;
 
 /// The pack of a file, or the one inside.
 ///
@@ -18,23 +23,22 @@ pub fn pack(path: Option<&Path>) -> anyhow::Result<Arc<CharacterPack>> {
         let pack = CharacterPack::from_bytes(assets::HUMANOID_PACK).context("the pack inside the demo")?;
         return Ok(Arc::new(pack));
     };
-    let bytes = std::fs::read(path).with_context(|| format!("cannot read the pack {}", path.display()))?;
+    let bytes = files::read(path, MAX_DROPPED_BYTES).with_context(|| format!("pack {}", path.display()))?;
     let pack = CharacterPack::from_bytes(&bytes).with_context(|| format!("pack {}", path.display()))?;
     Ok(Arc::new(pack))
 }
 
-/// The humanoid of a file. When it is no good: the one inside, and what is wrong with the file.
-///
-/// # Errors
-/// When the humanoid inside is broken, which no build should be.
-pub fn mesh(path: Option<&Path>) -> anyhow::Result<(SkinnedMesh, Option<String>)> {
+/// How the characters of a pack look: with the mesh of a file, else with the pack's own, else with the mannequin if it
+/// fits the skeleton. Also returns what is wrong with the file or with the pack's mesh.
+#[must_use]
+pub fn appearance(path: Option<&Path>, pack: &CharacterPack, model: &Model) -> (Appearance, Option<String>) {
     let mut complaint = None;
     if let Some(path) = path {
-        match SkinnedMesh::load(path) {
-            Ok(mesh) => return Ok((mesh, None)),
+        match SkinnedMesh::load(path, &appearance::rig(model)) {
+            Ok(mesh) => return (Appearance::new(model.skeleton(), Some(mesh)), None),
             Err(error) => complaint = Some(error.to_string()),
         }
     }
-    let mesh = SkinnedMesh::from_bytes(assets::HUMANOID_GLB).context("the mesh inside the demo")?;
-    Ok((mesh, complaint))
+    let (appearance, of_pack) = appearance::of_pack(pack, model);
+    (appearance, complaint.or(of_pack))
 }

@@ -15,8 +15,9 @@ use policy_core::BlendMode;
 
 use crate::app::{App, PanelKind};
 use crate::sim::{GroundKind, MAX_CHARACTERS};
+use crate::text;
 
-/// Steer a physics-based humanoid by blending the parameters of tiny policies.
+/// Steer a physics-based character by blending the parameters of tiny policies.
 #[derive(Debug, Parser)]
 #[command(name = "policy-space", version, after_help = EXAMPLES, args_conflicts_with_subcommands = true)]
 pub struct Cli {
@@ -38,10 +39,13 @@ Examples:
       without a window: 20 seconds under a script of pad input, a report and pictures
   policy-space --headless --script assets/scripts/walk.ron --seconds 5 --frames out/ --panels
       the same, with the panels in the pictures
+  policy-space --character quadruped.pack.safetensors
+      another character; a pack or a mesh can also be dropped on the window
   policy-space --poses walk.json
       a clip in a window, round and round; with --headless --frames out/ once, as pictures
 
-Exit status: 0 when it ran, 1 when it could not, 2 when the command line is wrong.";
+Exit status: 0 when it ran, 1 when it could not, 2 when the command line is wrong, 128 and the number of the
+signal when one ended it (130 after Ctrl+C); the report and the settings are written then too.";
 
 /// Tasks besides the demo.
 #[derive(Debug, Subcommand)]
@@ -80,7 +84,7 @@ pub struct Demo {
         long,
         value_name = "FILE",
         conflicts_with_all = [
-            "script", "recording", "report", "pack", "mode", "ghost", "terrain", "characters", "seed",
+            "script", "recording", "report", "character", "mode", "ghost", "terrain", "characters", "seed",
         ]
     )]
     pub poses: Option<PathBuf>,
@@ -114,12 +118,17 @@ pub struct Demo {
     /// Distance of the camera, metres.
     #[arg(long, value_name = "METRES", value_parser = distance)]
     pub distance: Option<f32>,
-    /// Character pack instead of the one inside.
-    #[arg(long, value_name = "FILE")]
-    pub pack: Option<PathBuf>,
-    /// Humanoid to draw (.glb whose nodes carry the body names) instead of the one inside.
+    /// Character pack to open instead of the humanoid inside: any skeleton. Packs of version 2 bring their body; those
+    /// of version 1 are humanoids.
+    #[arg(long, value_name = "FILE", visible_alias = "pack")]
+    pub character: Option<PathBuf>,
+    /// Mesh to draw (.glb whose nodes carry the body names) instead of the pack's own. Characters without a mesh are
+    /// drawn as their collision shapes.
     #[arg(long, value_name = "FILE")]
     pub mesh: Option<PathBuf>,
+    /// Save and restore every controller through bytes at every tick: a check that changes no bit of the result.
+    #[arg(long, requires = "headless")]
+    pub renew_controllers: bool,
     /// How blends become actions: parameters, actions or switch.
     #[arg(long, default_value = "parameters", value_parser = mode)]
     pub mode: BlendMode,
@@ -146,19 +155,24 @@ pub struct Demo {
     pub trace: bool,
 }
 
+/// Longest run without a window, seconds.
+const MOST_SECS: f64 = 3600.0;
+/// Longest line of a trace, characters.
+const LONGEST_LINE: usize = 200;
+/// Most pixels of a picture: one takes about 45 bytes of memory.
+const MOST_PIXELS: u32 = 3840 * 2160;
+
 /// Writes one line of what the player does to standard error.
 pub fn trace(app: &App) {
     let player = app.sim.player();
     let position = player.report().position;
     let nodes = app.sim.pack().graph().nodes();
-    let at = player.state.body(policy_core::Body::Pelvis).position;
-    // Where standard error is closed there is nobody to tell.
-    let _ = writeln!(
-        std::io::stderr(),
+    let at = player.state.root().position;
+    let line = format!(
         "tick {} {} {} {:.2} at {:.3} {:.3} {:.3} speed {:.2}{}",
         app.sim.ticks(),
-        nodes[position.from].name,
-        nodes[position.to].name,
+        nodes[position.from.index()].name,
+        nodes[position.to.index()].name,
         position.t,
         at.x,
         at.y,
@@ -166,20 +180,26 @@ pub fn trace(app: &App) {
         player.speed(),
         if player.is_down() { " down" } else { "" },
     );
+    // Where standard error is closed there is no other place for it.
+    let _ = writeln!(std::io::stderr(), "{}", text::printable(&line, LONGEST_LINE));
 }
 
 fn size(text: &str) -> Result<[u32; 2], String> {
     let parts = text.split_once('x').and_then(|(w, h)| Some([w.parse().ok()?, h.parse().ok()?]));
     match parts {
-        Some([w, h]) if (16..=8192).contains(&w) && (16..=8192).contains(&h) => Ok([w, h]),
-        _ => Err("expected WIDTHxHEIGHT, each 16 to 8192, such as 1280x720".into()),
+        Some([w, h]) if (16..=8192).contains(&w) && (16..=8192).contains(&h) && w * h <= MOST_PIXELS => {
+            Ok([w, h])
+        }
+        _ => Err(format!(
+            "expected WIDTHxHEIGHT, such as 1280x720, each 16 to 8192 and at most {MOST_PIXELS} pixels (3840x2160)"
+        )),
     }
 }
 
 fn seconds(text: &str) -> Result<f64, String> {
     match text.parse() {
-        Ok(seconds) if seconds > 0.0 && seconds <= 3600.0 => Ok(seconds),
-        _ => Err("expected a number above 0 and up to 3600".into()),
+        Ok(seconds) if seconds > 0.0 && seconds <= MOST_SECS => Ok(seconds),
+        _ => Err(format!("expected a number above 0 and up to {MOST_SECS}")),
     }
 }
 
@@ -237,12 +257,13 @@ mod tests {
         assert!(error(&["--terrain", "lava"]).contains("flat, wavy, steps"));
         assert!(error(&["--mode", "add"]).contains("parameters, actions, switch"));
         assert!(error(&["--size", "12x"]).contains("1280x720"));
+        assert!(error(&["--size", "8192x8192"]).contains("at most 8294400 pixels"));
         assert!(error(&["--characters", "0"]).contains("1 to 200"));
         assert!(error(&["--headless", "--seconds", "nan"]).contains("up to 3600"));
         assert!(error(&["--frobnicate"]).contains("--frobnicate"));
         assert!(error(&["--headless", "--frames", "x", "--panels=stove"]).contains("paths,graph"));
         assert!(error(&["--report", "x.json"]).contains("--headless"));
-        for other in ["--script", "--recording", "--report", "--pack"] {
+        for other in ["--script", "--recording", "--report", "--character"] {
             let said = error(&["--headless", "--poses", "a.json", other, "b"]);
             assert!(said.contains("--poses") && said.contains("cannot be used with"), "{said}");
         }

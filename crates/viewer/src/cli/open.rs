@@ -1,11 +1,10 @@
-//! Makes the demo of a command line: world, layout, mesh.
+//! Makes the demo of a command line: world, layout, appearance.
 
 use std::path::PathBuf;
 
 use super::{Demo, load};
-use crate::app::{App, Layout, PanelKind, Side};
-use crate::assets;
-use crate::mesh::SkinnedMesh;
+use crate::app::{App, PanelKind, PanelLayout, Side};
+use crate::render::Appearance;
 use crate::sim::{Playback, SimConfig, Simulation};
 
 /// What a window needs.
@@ -13,13 +12,13 @@ use crate::sim::{Playback, SimConfig, Simulation};
 pub struct Opened {
     /// The demo.
     pub app: App,
-    /// The humanoid.
-    pub mesh: SkinnedMesh,
+    /// How characters are drawn.
+    pub appearance: Appearance,
     /// Where its layout is kept, when it is.
     pub layout: Option<PathBuf>,
 }
 
-/// Makes the demo. A mesh or layout that is no good is said in [`App::notice`], and the default taken.
+/// Makes the demo. Of a mesh or layout that is no good [`App::notice`] says so, and the default is used.
 ///
 /// # Errors
 /// When the pack or the clip is no good, or the world can't be made.
@@ -27,14 +26,14 @@ pub fn open(demo: &Demo) -> anyhow::Result<Opened> {
     let mut notices = Vec::new();
     // A clip needs other panels than the demo, whose layout it leaves alone.
     let clip = demo.poses.as_deref();
-    let home = if demo.no_layout || demo.headless || clip.is_some() { None } else { Layout::home() };
-    let mut layout = match home.as_deref().map(Layout::load) {
+    let home = if demo.no_layout || demo.headless || clip.is_some() { None } else { PanelLayout::home() };
+    let mut layout = match home.as_deref().map(PanelLayout::load) {
         Some(Ok(layout)) => layout,
         Some(Err(error)) => {
             notices.push(error.to_string());
-            Layout::default()
+            PanelLayout::default()
         }
-        None => Layout::default(),
+        None => PanelLayout::default(),
     };
     if clip.is_some() {
         layout.open =
@@ -45,17 +44,18 @@ pub fn open(demo: &Demo) -> anyhow::Result<Opened> {
         // In turn to the left and to the right.
         layout.open.extend(list.0.iter().copied().zip([Side::Left, Side::Right].into_iter().cycle()));
     }
-    let (mesh, complaint) = load::mesh(demo.mesh.as_deref())?;
-    notices.extend(complaint);
-    let pack = load::pack(demo.pack.as_deref())?;
+    let pack = load::pack(demo.character.as_deref())?;
     let config = SimConfig {
         ground: demo.terrain,
         characters: demo.characters,
         seed: demo.seed,
         history: !demo.headless && clip.is_none(),
     };
-    let mut sim = Simulation::new(assets::HUMANOID_MJCF, pack, config)?;
-    sim.overrides.mode = demo.mode;
+    let mut sim = Simulation::new(pack, config)?;
+    sim.set_blend_mode(demo.mode);
+    sim.renews_controllers = demo.renew_controllers;
+    let (appearance, complaint) = load::appearance(demo.mesh.as_deref(), sim.pack(), sim.model());
+    notices.extend(complaint);
     if let Some(path) = clip {
         let playback = Playback::load(path, sim.model())?;
         sim.play(playback);
@@ -64,9 +64,10 @@ pub fn open(demo: &Demo) -> anyhow::Result<Opened> {
         sim.start_ghost(mode);
     }
     let mut app = App::new(sim, layout);
+    app.has_mesh = appearance.mesh().is_some();
     if let Some(distance) = demo.distance {
         app.camera.distance = distance;
     }
     app.notice = (!notices.is_empty()).then(|| notices.join("\n"));
-    Ok(Opened { app, mesh, layout: home })
+    Ok(Opened { app, appearance, layout: home })
 }

@@ -5,10 +5,11 @@ use gamepad::recording::{Recording, VirtualPad};
 use gamepad::{GamepadState, Script};
 
 use super::Demo;
+use crate::files;
 
 /// A pad that depends on time alone.
 pub enum PadInput {
-    /// Nobody touches it.
+    /// At rest.
     Neutral,
     /// Key frames over time.
     Script(Script),
@@ -22,6 +23,10 @@ impl PadInput {
     /// # Errors
     /// When a file can't be read or is no script or recording, or a recording's pad is not known.
     pub fn load(demo: &Demo) -> anyhow::Result<Self> {
+        for path in demo.script.iter().chain(&demo.recording) {
+            // A pipe that nothing is written to would be waited for without end.
+            files::check_regular(path).with_context(|| path.display().to_string())?;
+        }
         if let Some(path) = &demo.recording {
             let pad = VirtualPad::new(Recording::load(path)?).with_context(|| path.display().to_string())?;
             return Ok(Self::Recording(Box::new(pad)));
@@ -29,7 +34,7 @@ impl PadInput {
         Ok(demo.script.as_deref().map(Script::load).transpose()?.map_or(Self::Neutral, Self::Script))
     }
 
-    /// Seconds it lasts; `None` for a pad that nobody touches.
+    /// Seconds it lasts; `None` for a pad at rest.
     pub fn duration(&self) -> Option<f64> {
         match self {
             Self::Neutral => None,

@@ -7,6 +7,8 @@ use serde::Serialize;
 pub struct Report {
     /// Simulated time.
     pub seconds: f64,
+    /// The signal that ended the run before its time.
+    pub ended_by: Option<&'static str>,
     /// Number of characters.
     pub characters: usize,
     /// Blend mode.
@@ -15,20 +17,20 @@ pub struct Report {
     pub terrain: &'static str,
     /// Seed.
     pub seed: u32,
-    /// Share of the ticks in which a character neither lay nor rose.
+    /// Share of the ticks in which a character neither lay nor got up.
     pub upright_fraction: f64,
-    /// Way of the pelvis seen from above, mean over the characters.
+    /// Way of the root body seen from above, mean over the characters.
     pub distance_m: f64,
     /// Falls of all characters.
     pub falls: u64,
     /// What happens to a character that fell.
     pub after_a_fall: String,
-    /// Times a character was stood up because it could not rise by itself.
+    /// Times a character was stood up because it could not get up by itself.
     pub stood_up: u64,
-    /// Times the physics diverged; each was dumped and the character stood up.
+    /// Times the physics diverged; each time the character was stood up.
     pub diverged: usize,
-    /// Files with the states before each divergence.
-    pub dumps: Vec<String>,
+    /// Replay files with the states before the first ten divergences.
+    pub replays: Vec<String>,
     /// Distance over time.
     pub mean_speed_mps: f64,
     /// Ticks of all characters for each second on the clock, drawing not counted.
@@ -41,4 +43,25 @@ pub struct Report {
     pub frames: usize,
     /// What drew them.
     pub adapter: Option<String>,
+}
+
+impl Report {
+    /// The report in one line.
+    #[must_use]
+    pub fn summary(&self) -> String {
+        format!(
+            "{:.1} s, {}: upright {:.1} %, {:.2} m, {}, {:.2} m/s, state {}",
+            self.seconds,
+            count(self.characters as u64, "character"),
+            100.0 * self.upright_fraction,
+            self.distance_m,
+            count(self.falls, "fall"),
+            self.mean_speed_mps,
+            self.state_hash,
+        )
+    }
+}
+
+fn count(number: u64, what: &str) -> String {
+    format!("{number} {what}{}", if number == 1 { "" } else { "s" })
 }

@@ -5,8 +5,8 @@
 //! MJCF, so that the soles stand on the ground and nothing visible hangs in the air.
 
 use glam::{Vec3, vec3};
-use policy_core::Body;
 
+use super::bone::Bone;
 use super::field::Shape;
 
 /// Position of each body in its parent with all joints at zero, in body order (the pelvis at the origin).
@@ -32,7 +32,7 @@ pub const REST_OFFSETS: [Vec3; 15] = [
 #[must_use]
 pub fn rest_positions() -> [Vec3; 15] {
     let mut positions = REST_OFFSETS;
-    for body in Body::ALL {
+    for body in Bone::ALL {
         if let Some(parent) = body.parent() {
             positions[body.index()] += positions[parent.index()];
         }
@@ -42,7 +42,7 @@ pub fn rest_positions() -> [Vec3; 15] {
 
 /// A rigid shell piece.
 pub(super) struct Piece {
-    pub(super) body: Body,
+    pub(super) body: Bone,
     pub(super) shapes: Vec<Shape>,
     /// Fillet between its shapes.
     pub(super) fillet: f32,
@@ -62,7 +62,7 @@ fn egg(centre: Vec3, radii: Vec3) -> Shape {
     Shape::Ellipsoid { centre, radii }
 }
 
-fn piece(body: Body, fillet: f32, cell: f32, shapes: &[Shape]) -> Piece {
+fn piece(body: Bone, fillet: f32, cell: f32, shapes: &[Shape]) -> Piece {
     Piece { body, shapes: shapes.to_vec(), fillet, cell, floor: f32::NEG_INFINITY, dark: false }
 }
 
@@ -90,9 +90,9 @@ fn trunk() -> Vec<Piece> {
     }
     let visor = egg(vec3(0.030, 0.0, 0.186), vec3(0.0835, 0.0745, 0.040));
     vec![
-        Piece { dark: true, ..piece(Body::Head, 0.02, 0.006, &[visor]) },
+        Piece { dark: true, ..piece(Bone::Head, 0.02, 0.006, &[visor]) },
         piece(
-            Body::Head,
+            Bone::Head,
             0.035,
             0.0085,
             &[
@@ -101,9 +101,9 @@ fn trunk() -> Vec<Piece> {
                 egg(vec3(0.078, 0.0, 0.098), vec3(0.022, 0.026, 0.018)),
             ],
         ),
-        piece(Body::Torso, 0.045, 0.012, &chest),
+        piece(Bone::Torso, 0.045, 0.012, &chest),
         piece(
-            Body::Pelvis,
+            Bone::Pelvis,
             0.05,
             0.012,
             &[
@@ -119,7 +119,7 @@ fn trunk() -> Vec<Piece> {
 fn right_limbs() -> Vec<Piece> {
     let mut pieces = vec![
         piece(
-            Body::RightUpperArm,
+            Bone::RightUpperArm,
             0.04,
             0.0105,
             &[
@@ -129,7 +129,7 @@ fn right_limbs() -> Vec<Piece> {
             ],
         ),
         piece(
-            Body::RightLowerArm,
+            Bone::RightLowerArm,
             0.03,
             0.0105,
             &[
@@ -137,9 +137,9 @@ fn right_limbs() -> Vec<Piece> {
                 egg(vec3(0.004, -0.004, -0.085), vec3(0.046, 0.042, 0.068)),
             ],
         ),
-        piece(Body::RightHand, 0.012, 0.006, &right_hand()),
+        piece(Bone::RightHand, 0.012, 0.006, &right_hand()),
         piece(
-            Body::RightThigh,
+            Bone::RightThigh,
             0.05,
             0.0125,
             &[
@@ -148,7 +148,7 @@ fn right_limbs() -> Vec<Piece> {
             ],
         ),
         piece(
-            Body::RightShin,
+            Bone::RightShin,
             0.035,
             0.0115,
             &[
@@ -160,7 +160,7 @@ fn right_limbs() -> Vec<Piece> {
         ),
     ];
     let mut shoe = piece(
-        Body::RightFoot,
+        Bone::RightFoot,
         0.03,
         0.0085,
         &[
@@ -171,7 +171,7 @@ fn right_limbs() -> Vec<Piece> {
     );
     shoe.floor = -0.034;
     pieces.push(shoe);
-    pieces.push(Piece { dark: true, ..piece(Body::RightFoot, 0.02, 0.007, &[sole()]) });
+    pieces.push(Piece { dark: true, ..piece(Bone::RightFoot, 0.02, 0.007, &[sole()]) });
     pieces
 }
 
@@ -198,13 +198,13 @@ fn sole() -> Shape {
 }
 
 /// The suit under the shells, each shape with the body that carries it.
-pub(super) fn suit() -> Vec<(Body, Shape)> {
+pub(super) fn suit() -> Vec<(Bone, Shape)> {
     let mut shapes = vec![
-        (Body::Pelvis, egg(vec3(0.0, 0.0, 0.05), vec3(0.088, 0.118, 0.09))),
-        (Body::Pelvis, egg(vec3(0.0, 0.0, 0.16), vec3(0.078, 0.098, 0.12))),
-        (Body::Torso, egg(vec3(0.0, 0.0, 0.11), vec3(0.09, 0.122, 0.16))),
-        (Body::Torso, egg(vec3(-0.01, 0.0, 0.2), vec3(0.07, 0.15, 0.065))),
-        (Body::Head, cone(vec3(-0.012, 0.0, -0.02), vec3(0.004, 0.0, 0.11), 0.054, 0.049)),
+        (Bone::Pelvis, egg(vec3(0.0, 0.0, 0.05), vec3(0.088, 0.118, 0.09))),
+        (Bone::Pelvis, egg(vec3(0.0, 0.0, 0.16), vec3(0.078, 0.098, 0.12))),
+        (Bone::Torso, egg(vec3(0.0, 0.0, 0.11), vec3(0.09, 0.122, 0.16))),
+        (Bone::Torso, egg(vec3(-0.01, 0.0, 0.2), vec3(0.07, 0.15, 0.065))),
+        (Bone::Head, cone(vec3(-0.012, 0.0, -0.02), vec3(0.004, 0.0, 0.11), 0.054, 0.049)),
     ];
     for (body, shape) in right_suit() {
         shapes.push((body, shape));
@@ -213,19 +213,19 @@ pub(super) fn suit() -> Vec<(Body, Shape)> {
     shapes
 }
 
-fn right_suit() -> Vec<(Body, Shape)> {
+fn right_suit() -> Vec<(Bone, Shape)> {
     vec![
-        (Body::RightUpperArm, cone(vec3(0.0, 0.02, -0.01), vec3(0.0, 0.0, -0.26), 0.046, 0.029)),
-        (Body::RightLowerArm, cone(vec3(0.0, 0.0, 0.0), vec3(0.0, 0.0, -0.24), 0.0325, 0.0205)),
-        (Body::RightHand, cone(vec3(0.0, 0.0, 0.02), vec3(0.0, 0.0, -0.03), 0.021, 0.016)),
-        (Body::RightThigh, cone(vec3(0.0, 0.0, 0.01), vec3(0.0, 0.0, -0.4), 0.074, 0.041)),
-        (Body::RightShin, cone(vec3(0.0, 0.0, 0.0), vec3(0.0, 0.0, -0.38), 0.042, 0.027)),
-        (Body::RightFoot, cone(vec3(-0.002, 0.0, 0.005), vec3(0.0, 0.0, -0.02), 0.030, 0.030)),
+        (Bone::RightUpperArm, cone(vec3(0.0, 0.02, -0.01), vec3(0.0, 0.0, -0.26), 0.046, 0.029)),
+        (Bone::RightLowerArm, cone(vec3(0.0, 0.0, 0.0), vec3(0.0, 0.0, -0.24), 0.0325, 0.0205)),
+        (Bone::RightHand, cone(vec3(0.0, 0.0, 0.02), vec3(0.0, 0.0, -0.03), 0.021, 0.016)),
+        (Bone::RightThigh, cone(vec3(0.0, 0.0, 0.01), vec3(0.0, 0.0, -0.4), 0.074, 0.041)),
+        (Bone::RightShin, cone(vec3(0.0, 0.0, 0.0), vec3(0.0, 0.0, -0.38), 0.042, 0.027)),
+        (Bone::RightFoot, cone(vec3(-0.002, 0.0, 0.005), vec3(0.0, 0.0, -0.02), 0.030, 0.030)),
     ]
 }
 
-fn left_of(body: Body) -> Body {
-    Body::from_name(&body.name().replacen("right", "left", 1)).unwrap_or(body)
+fn left_of(body: Bone) -> Bone {
+    Bone::from_name(&body.name().replacen("right", "left", 1)).unwrap_or(body)
 }
 
 #[cfg(test)]
@@ -239,7 +239,7 @@ mod tests {
 
     #[test]
     fn rest_positions_add_up_along_the_leg() {
-        let foot = rest_positions()[Body::LeftFoot.index()];
+        let foot = rest_positions()[Bone::LeftFoot.index()];
         assert!((foot - vec3(0.0, 0.084_887, -0.831_416)).length() < 1e-5);
     }
 }

@@ -4,10 +4,10 @@
 //! glTF is y up and faces z; the character is z up and faces x: `(x, y, z)` becomes `(y, z, x)`.
 
 use glam::Vec3;
-use policy_core::{BODY_NAMES, Body};
 use serde_json::{Value, json};
 
 use super::anatomy::{REST_OFFSETS, rest_positions};
+use super::bone::{BONE_NAMES, Bone};
 use super::sculpt::Part;
 
 const ARRAY_BUFFER: u32 = 34962;
@@ -103,11 +103,11 @@ pub(super) fn write(levels: &[(Part, Part)]) -> Vec<u8> {
         meshes.push(json!({ "name": name, "primitives": primitives }));
     }
     let inverse_bind = writer.inverse_bind_matrices();
-    let joints: Vec<usize> = (0..BODY_NAMES.len()).collect();
+    let joints: Vec<usize> = (0..BONE_NAMES.len()).collect();
     let document = json!({
         "asset": { "version": "2.0", "generator": "Policy Space mannequin" },
         "scene": 0,
-        "scenes": [{ "name": "humanoid", "nodes": [0, BODY_NAMES.len()] }],
+        "scenes": [{ "name": "humanoid", "nodes": [0, BONE_NAMES.len()] }],
         "nodes": nodes(),
         "meshes": meshes,
         "skins": [{ "name": "humanoid", "joints": joints, "skeleton": 0, "inverseBindMatrices": inverse_bind }],
@@ -123,13 +123,13 @@ pub(super) fn write(levels: &[(Part, Part)]) -> Vec<u8> {
 }
 
 fn nodes() -> Vec<Value> {
-    let mut nodes: Vec<Value> = Body::ALL
+    let mut nodes: Vec<Value> = Bone::ALL
         .iter()
         .map(|body| {
             let children: Vec<usize> =
-                Body::ALL.iter().filter(|b| b.parent() == Some(*body)).map(|b| b.index()).collect();
+                Bone::ALL.iter().filter(|b| b.parent() == Some(*body)).map(|b| b.index()).collect();
             let mut offset = REST_OFFSETS[body.index()];
-            if *body == Body::Pelvis {
+            if *body == Bone::Pelvis {
                 offset.z = STANDING;
             }
             let mut node = json!({ "name": body.name(), "translation": gltf_from_world(offset) });

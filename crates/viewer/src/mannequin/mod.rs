@@ -3,6 +3,7 @@
 //! assets is exactly what [`generate`] returns, and a test holds it to that.
 
 mod anatomy;
+mod bone;
 mod field;
 mod glb;
 mod sculpt;

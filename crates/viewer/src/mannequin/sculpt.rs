@@ -1,9 +1,9 @@
 //! Builds the two surfaces of the mannequin, suit and shells, with normals, skin and baked occlusion.
 
 use glam::{Vec3, Vec4};
-use policy_core::Body;
 
 use super::anatomy::{self, Piece};
+use super::bone::Bone;
 use super::field::{Shape, normal, smooth_union};
 use super::surface_nets;
 
@@ -37,7 +37,7 @@ pub(super) struct Part {
 pub(super) struct Sculpture {
     rest: [Vec3; 15],
     shells: Vec<Piece>,
-    suit: Vec<(Body, Shape)>,
+    suit: Vec<(Bone, Shape)>,
 }
 
 impl Sculpture {
@@ -145,7 +145,7 @@ impl Sculpture {
     /// Bodies that touch in the skeleton melt into each other; others do not, so legs stay apart.
     fn suit_distance(&self, group: Group, p: Vec3) -> f32 {
         let distances = self.body_distances(group, p);
-        let joined = Body::ALL.iter().filter_map(|b| Some((b.index(), b.parent()?.index())));
+        let joined = Bone::ALL.iter().filter_map(|b| Some((b.index(), b.parent()?.index())));
         joined
             .filter(|&(child, parent)| distances[child].is_finite() && distances[parent].is_finite())
             .map(|(child, parent)| smooth_union(distances[child], distances[parent], fillet(child)))
@@ -158,8 +158,8 @@ impl Sculpture {
         let nearest = nearest(&distances);
         let linked = |i: usize| {
             i == nearest
-                || Body::ALL[i].parent() == Some(Body::ALL[nearest])
-                || Body::ALL[nearest].parent() == Some(Body::ALL[i])
+                || Bone::ALL[i].parent() == Some(Bone::ALL[nearest])
+                || Bone::ALL[nearest].parent() == Some(Bone::ALL[i])
         };
         let mut shares: Vec<(usize, f32)> = (0..15)
             .filter(|&i| linked(i))
@@ -183,10 +183,10 @@ enum Group {
 impl Group {
     const ALL: [Group; 3] = [Group::Trunk, Group::RightArm, Group::LeftArm];
 
-    fn of(body: Body) -> Self {
+    fn of(body: Bone) -> Self {
         match body {
-            Body::RightUpperArm | Body::RightLowerArm | Body::RightHand => Group::RightArm,
-            Body::LeftUpperArm | Body::LeftLowerArm | Body::LeftHand => Group::LeftArm,
+            Bone::RightUpperArm | Bone::RightLowerArm | Bone::RightHand => Group::RightArm,
+            Bone::LeftUpperArm | Bone::LeftLowerArm | Bone::LeftHand => Group::LeftArm,
             _ => Group::Trunk,
         }
     }
@@ -197,7 +197,7 @@ fn nearest(distances: &[f32; 15]) -> usize {
 }
 
 fn fillet(child: usize) -> f32 {
-    if child == Body::Head.index() { 0.03 } else { SUIT_FILLET }
+    if child == Bone::Head.index() { 0.03 } else { SUIT_FILLET }
 }
 
 /// Shares as bytes that sum to 255, the largest taking what rounding leaves.

@@ -1,31 +1,32 @@
-//! Ties the nodes of a document to the bodies of the character.
+//! Ties the nodes of a document to the bodies of a skeleton.
 
 use glam::{Affine3A, Mat3A, Mat4, Quat, Vec3};
-use policy_core::Body;
+use policy_core::BodyId;
 
-use super::MeshError;
-use crate::mannequin::rest_positions;
+use super::{MeshError, Rig};
 
 /// Limbs that point at least this far off their rest direction are turned, as a cosine (25 degrees).
 const TURN_BEYOND: f32 = 0.906;
 
-/// Where the nodes stand in the rest pose, and which body each follows.
+/// Where the nodes are in the rest pose, and which body each follows.
 pub(super) struct Binding {
     /// World (z up) from node, all nodes.
     pub(super) world_from_node: Vec<Mat4>,
     /// The body that each node follows.
-    pub(super) body_of_node: Vec<Body>,
+    pub(super) body_of_node: Vec<BodyId>,
     /// Frame of each body from the world of the rest pose.
-    pub(super) body_from_world: [Affine3A; 15],
+    pub(super) body_from_world: Vec<Affine3A>,
 }
 
 impl Binding {
-    pub(super) fn of(document: &gltf::Document) -> Result<Self, MeshError> {
+    pub(super) fn of(document: &gltf::Document, rig: &Rig) -> Result<Self, MeshError> {
         let parents = parents(document);
         let nodes: Vec<gltf::Node<'_>> = document.nodes().collect();
-        let named: Vec<Option<Body>> = nodes.iter().map(|n| n.name().and_then(Body::from_name)).collect();
-        let missing: Vec<&'static str> =
-            Body::ALL.iter().filter(|b| !named.contains(&Some(**b))).map(|b| b.name()).collect();
+        let skeleton = rig.skeleton();
+        let named: Vec<Option<BodyId>> =
+            nodes.iter().map(|n| n.name().and_then(|name| skeleton.body_named(name))).collect();
+        let missing = rig.bodies().filter(|body| !named.contains(&Some(*body)));
+        let missing: Vec<String> = missing.map(|body| skeleton.body(body).name.clone()).collect();
         if !missing.is_empty() {
             return Err(MeshError::MissingBodies { missing });
         }
@@ -39,16 +40,16 @@ impl Binding {
                 body = body.or(named[ancestor]);
             }
             world_from_node.push(world_from_gltf() * matrix);
-            // Nodes above the pelvis move with it.
-            body_of_node.push(body.unwrap_or(Body::Pelvis));
+            // Nodes above the root body move with it.
+            body_of_node.push(body.unwrap_or(skeleton.root()));
         }
-        let mut origins = [Vec3::ZERO; 15];
+        let mut origins = vec![Vec3::ZERO; skeleton.body_count()];
         for (node, body) in named.iter().enumerate() {
             if let Some(body) = body {
                 origins[body.index()] = world_from_node[node].w_axis.truncate();
             }
         }
-        Ok(Self { world_from_node, body_of_node, body_from_world: body_frames(&origins) })
+        Ok(Self { world_from_node, body_of_node, body_from_world: body_frames(rig, &origins) })
     }
 }
 
@@ -80,33 +81,25 @@ fn chain(parents: &[Option<usize>], node: usize) -> Result<Vec<usize>, MeshError
 }
 
 /// Frames of the bodies: at their nodes, turned so that a limb lies along the frame as it does in the character.
-fn body_frames(origins: &[Vec3; 15]) -> [Affine3A; 15] {
-    let rest = rest_positions();
-    let mut turns = [Quat::IDENTITY; 15];
-    let mut frames = [Affine3A::IDENTITY; 15];
-    for body in Body::ALL {
+fn body_frames(rig: &Rig, origins: &[Vec3]) -> Vec<Affine3A> {
+    let mut turns: Vec<Quat> = Vec::with_capacity(origins.len());
+    let mut frames = Vec::with_capacity(origins.len());
+    for body in rig.bodies() {
         let i = body.index();
-        let turn = match end_of(body) {
+        let turn = match rig.end_of(body) {
             Some(end) => {
                 let here = (origins[end.index()] - origins[i]).normalize_or_zero();
-                let there = (rest[end.index()] - rest[i]).normalize_or_zero();
-                let far = here.length_squared() > 0.5 && here.dot(there) < TURN_BEYOND;
+                let there = (rig.rest(end) - rig.rest(body)).normalize_or_zero();
+                let known = here.length_squared() > 0.5 && there.length_squared() > 0.5;
+                let far = known && here.dot(there) < TURN_BEYOND;
                 if far { Quat::from_rotation_arc(here, there) } else { Quat::IDENTITY }
             }
-            None => body.parent().map_or(Quat::IDENTITY, |parent| turns[parent.index()]),
+            // Parents come first.
+            None => rig.skeleton().parent(body).map_or(Quat::IDENTITY, |parent| turns[parent.index()]),
         };
-        turns[i] = turn;
+        turns.push(turn);
         let rotation = Mat3A::from_quat(turn);
-        frames[i] = Affine3A { matrix3: rotation, translation: -(rotation * glam::Vec3A::from(origins[i])) };
+        frames.push(Affine3A { matrix3: rotation, translation: -(rotation * glam::Vec3A::from(origins[i])) });
     }
     frames
-}
-
-/// The body at the far end of a limb; hands and feet have none.
-fn end_of(body: Body) -> Option<Body> {
-    match body {
-        Body::Pelvis => Some(Body::Torso),
-        Body::Torso => Some(Body::Head),
-        _ => Body::ALL.into_iter().find(|b| b.parent() == Some(body)),
-    }
 }

@@ -1,8 +1,8 @@
-//! What can be wrong with a humanoid's glTF.
+//! What can be wrong with the glTF of a character.
 
 use std::path::PathBuf;
 
-/// Why a glTF can't be the humanoid.
+/// Why a glTF can't be the mesh of a character.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum MeshError {
@@ -14,9 +14,9 @@ pub enum MeshError {
         /// What is wrong.
         source: Box<MeshError>,
     },
-    /// The file can't be read.
-    #[error("cannot read: {0}")]
-    Read(std::io::Error),
+    /// The file can't be read, or is too large.
+    #[error(transparent)]
+    Read(#[from] crate::files::ReadError),
     /// The bytes are no glTF 2.0.
     #[error("expected glTF 2.0 binary (.glb), found: {0}")]
     Parse(gltf::Error),
@@ -51,7 +51,7 @@ pub enum MeshError {
     #[error("expected a node for every body, found none named {}", missing.join(", "))]
     MissingBodies {
         /// Names of the bodies.
-        missing: Vec<&'static str>,
+        missing: Vec<String>,
     },
     /// A vertex attribute is missing.
     #[error("mesh {mesh}, primitive {primitive}: expected the attribute {attribute}, found none")]
@@ -75,7 +75,7 @@ pub enum MeshError {
         /// What is.
         found: String,
     },
-    /// More of something than any humanoid needs.
+    /// More of something than any character needs.
     #[error("expected at most {most} {what}, found {found}")]
     TooMany {
         /// What there is too much of.

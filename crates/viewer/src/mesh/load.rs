@@ -2,25 +2,25 @@
 
 use glam::{Affine3A, Mat4};
 use gltf::accessor::{DataType, Dimensions};
-use policy_core::Body;
+use policy_core::BodyId;
 
 use super::binding::Binding;
 use super::primitive::{Follow, Primitive};
 use super::read::{Checked, is_kind};
-use super::{Joint, Level, MAX_JOINTS, MAX_VERTICES, Material, MeshError, Part, SkinnedMesh};
+use super::{Joint, Level, MAX_JOINTS, Material, MeshError, Part, Rig, SkinnedMesh, parse};
 
-pub(super) fn load(bytes: &[u8]) -> Result<SkinnedMesh, MeshError> {
-    let glb = gltf::Gltf::from_slice(bytes).map_err(MeshError::Parse)?;
+pub(super) fn load(bytes: &[u8], rig: &Rig) -> Result<SkinnedMesh, MeshError> {
+    let glb = parse::parse(bytes)?;
     let blob = glb.blob.as_deref().ok_or(MeshError::NoBinary)?;
     let checked = Checked::new(&glb.document, blob)?;
     let document = checked.document;
     let skinned = document.nodes().find_map(|n| Some((n.mesh()?, n.skin()?)));
-    let rigid =
-        || document.nodes().any(|n| n.mesh().is_some() && n.name().and_then(Body::from_name).is_some());
+    let is_body = |name: &str| rig.skeleton().body_named(name).is_some();
+    let rigid = || document.nodes().any(|n| n.mesh().is_some() && n.name().is_some_and(is_body));
     if skinned.is_none() && !rigid() {
         return Err(MeshError::NoSkin { meshes: document.meshes().count() });
     }
-    let binding = Binding::of(document)?;
+    let binding = Binding::of(document, rig)?;
     let mut materials: Vec<Material> = document.materials().map(|m| material(&m)).collect();
     materials.push(material_of([0.6, 0.6, 0.6], 0.6, 0.0, true));
     let (joints, levels) = match skinned {
@@ -29,10 +29,6 @@ pub(super) fn load(bytes: &[u8]) -> Result<SkinnedMesh, MeshError> {
         }
         None => rigid_level(&checked, &binding)?,
     };
-    let vertices: usize = levels.iter().map(|l| l.vertices.len()).sum();
-    if vertices > MAX_VERTICES {
-        return Err(MeshError::TooMany { what: "vertices", most: MAX_VERTICES, found: vertices });
-    }
     Ok(SkinnedMesh { joints, materials, levels })
 }
 
@@ -67,19 +63,24 @@ fn skin_joints(
         || vec![Mat4::IDENTITY; count],
         |matrices| matrices.map(|m| Mat4::from_cols_array_2d(&m)).collect(),
     );
-    Ok(skin
-        .joints()
+    skin.joints()
         .zip(inverse_bind)
         .map(|(node, inverse_bind)| {
             let world_from_mesh = binding.world_from_node[node.index()] * inverse_bind;
             joint(binding, binding.body_of_node[node.index()], world_from_mesh)
         })
-        .collect())
+        .collect()
 }
 
-fn joint(binding: &Binding, body: Body, world_from_mesh: Mat4) -> Joint {
+fn joint(binding: &Binding, body: BodyId, world_from_mesh: Mat4) -> Result<Joint, MeshError> {
     let body_from_mesh = binding.body_from_world[body.index()] * Affine3A::from_mat4(world_from_mesh);
-    Joint { body, body_from_mesh }
+    if body_from_mesh.is_finite() {
+        Ok(Joint { body, body_from_mesh })
+    } else {
+        Err(MeshError::Unsupported {
+            what: format!("a transform of body {} with numbers that are not finite", body.index()),
+        })
+    }
 }
 
 /// The mesh itself, then meshes called `<name>_lod1`, `<name>_lod2`, ... that the same skin bends.
@@ -112,7 +113,7 @@ fn rigid_level(checked: &Checked<'_>, binding: &Binding) -> Result<(Vec<Joint>, 
         let follow = Follow::One { joint: joints.len() as u8 };
         append(&mut whole, level(checked, &mesh, follow)?);
         let body = binding.body_of_node[node.index()];
-        joints.push(joint(binding, body, binding.world_from_node[node.index()]));
+        joints.push(joint(binding, body, binding.world_from_node[node.index()])?);
     }
     Ok((joints, vec![whole]))
 }

@@ -1,28 +1,35 @@
-//! A glTF humanoid as the renderer takes it: vertices in mesh space, joints tied to the character's bodies.
+//! A glTF character as the renderer takes it: vertices in mesh space, joints tied to the bodies of a skeleton.
 //!
-//! Any glTF binary does whose nodes carry the body names of [`policy_core::BODY_NAMES`], either as joints of a
-//! skin or with a mesh on each body. Its rest pose is taken for the character's pose with all joints at zero;
-//! limbs that point elsewhere (arms of a T-pose) are turned there. Whatever is wrong is refused with a
-//! [`MeshError`] before anything is uploaded.
+//! A glTF binary fits when its nodes carry the names of the bodies, either as joints of a skin or with a mesh on each
+//! body. Its rest pose stands for the character's pose with all joints at zero. Limbs that point elsewhere, such as
+//! the arms of a T-pose, are turned. Anything wrong is refused with a [`MeshError`] before it is uploaded.
 
 mod binding;
 mod error;
 mod load;
+mod parse;
 mod primitive;
 mod read;
+mod rig;
 
 use std::path::Path;
 
 use bytemuck::{Pod, Zeroable};
 use glam::{Affine3A, Mat3A, Quat, Vec3};
-use policy_core::Body;
+use policy_core::BodyId;
 
+use crate::files;
 pub use error::MeshError;
+pub use rig::Rig;
 
 /// Most vertices a mesh may have, all levels together.
 pub const MAX_VERTICES: usize = 2_000_000;
+/// Most indices a mesh may have, all levels together.
+pub const MAX_INDICES: usize = 6 * MAX_VERTICES;
 /// Most joints a mesh may have.
 pub const MAX_JOINTS: usize = 256;
+/// Largest `.glb` that is read, bytes.
+pub const MAX_MESH_BYTES: u64 = 64 << 20;
 
 /// A vertex as the vertex buffer holds it.
 #[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
@@ -77,12 +84,12 @@ pub struct Level {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Joint {
     /// The body.
-    pub body: Body,
+    pub body: BodyId,
     /// Mesh space to the frame of the body.
     pub body_from_mesh: Affine3A,
 }
 
-/// A humanoid ready to be drawn.
+/// A character ready to be drawn.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SkinnedMesh {
     /// Joints in the order that vertices refer to.
@@ -94,28 +101,31 @@ pub struct SkinnedMesh {
 }
 
 impl SkinnedMesh {
-    /// Reads a `.glb` file.
+    /// Reads a `.glb` file for the bodies of `rig`.
     ///
     /// # Errors
     /// When it can't be read, and as [`SkinnedMesh::from_bytes`]; the message names the file.
-    pub fn load(path: &Path) -> Result<Self, MeshError> {
+    pub fn load(path: &Path, rig: &Rig) -> Result<Self, MeshError> {
         let in_file = |source| MeshError::File { path: path.to_owned(), source: Box::new(source) };
-        let bytes = std::fs::read(path).map_err(|error| in_file(MeshError::Read(error)))?;
-        Self::from_bytes(&bytes).map_err(in_file)
+        let bytes = files::read(path, MAX_MESH_BYTES).map_err(|error| in_file(error.into()))?;
+        Self::from_bytes(&bytes, rig).map_err(in_file)
     }
 
-    /// Reads the bytes of a `.glb` file.
+    /// Reads the bytes of a `.glb` file for the bodies of `rig`.
     ///
     /// # Errors
-    /// When they are no glTF binary, when bodies, skin or normals are missing, when a count or index is out of
-    /// range or a number is not finite.
-    pub fn from_bytes(bytes: &[u8]) -> Result<Self, MeshError> {
-        load::load(bytes)
+    /// When they are no glTF binary or more than [`MAX_MESH_BYTES`], when bodies, skin or normals are missing, when
+    /// a count or index is out of range or a number is not finite.
+    pub fn from_bytes(bytes: &[u8], rig: &Rig) -> Result<Self, MeshError> {
+        load::load(bytes, rig)
     }
 
-    /// Writes the matrix of each joint for a character whose bodies stand at `positions` and `rotations`, as
-    /// three rows each.
-    pub fn palette_into(&self, positions: &[Vec3; 15], rotations: &[Quat; 15], out: &mut Vec<[[f32; 4]; 3]>) {
+    /// Appends the matrix of each joint for a character whose bodies are at `positions` and `rotations`, as three
+    /// rows each.
+    ///
+    /// # Panics
+    /// When there are fewer bodies than in the rig that the mesh was read for.
+    pub fn palette_into(&self, positions: &[Vec3], rotations: &[Quat], out: &mut Vec<[[f32; 4]; 3]>) {
         for joint in &self.joints {
             let i = joint.body.index();
             let world_from_body =

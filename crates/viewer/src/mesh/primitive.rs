@@ -4,7 +4,7 @@ use gltf::accessor::{DataType, Dimensions};
 use gltf::mesh::Mode;
 
 use super::read::{Checked, is_kind};
-use super::{Level, MAX_VERTICES, MeshError, MeshVertex, Part};
+use super::{Level, MeshError, MeshVertex, Part};
 
 /// What the vertices of a primitive follow.
 #[derive(Clone, Copy)]
@@ -30,9 +30,7 @@ impl Primitive<'_, '_> {
             return Err(self.inconsistent("triangles", format!("{:?}", self.primitive.mode())));
         }
         let count = self.attribute(&gltf::Semantic::Positions, "POSITION", float3)?;
-        if count > MAX_VERTICES {
-            return Err(MeshError::TooMany { what: "vertices", most: MAX_VERTICES, found: count });
-        }
+        self.checked.take_vertices(count)?;
         self.same_count(&gltf::Semantic::Normals, "NORMAL", float3, count)?;
         let reader = self.primitive.reader(self.checked.data());
         let positions: Vec<[f32; 3]> = reader.read_positions().into_iter().flatten().collect();
@@ -59,20 +57,17 @@ impl Primitive<'_, '_> {
     }
 
     fn indices(&self, count: usize) -> Result<Vec<u32>, MeshError> {
-        let Some(accessor) = self.primitive.indices() else { return Ok((0..count as u32 / 3 * 3).collect()) };
+        let Some(accessor) = self.primitive.indices() else {
+            self.checked.take_indices(count)?;
+            return Ok((0..count as u32 / 3 * 3).collect());
+        };
         let types = [DataType::U8, DataType::U16, DataType::U32];
         if !is_kind(&accessor, Dimensions::Scalar, &types) || accessor.count() % 3 != 0 {
             return Err(
                 self.inconsistent("whole triangles of unsigned indices", format!("{}", accessor.count()))
             );
         }
-        if accessor.count() > 6 * MAX_VERTICES {
-            return Err(MeshError::TooMany {
-                what: "indices",
-                most: 6 * MAX_VERTICES,
-                found: accessor.count(),
-            });
-        }
+        self.checked.take_indices(accessor.count())?;
         let reader = self.primitive.reader(self.checked.data());
         let indices: Vec<u32> = reader.read_indices().map(|i| i.into_u32().collect()).unwrap_or_default();
         match indices.iter().find(|&&i| i as usize >= count) {

@@ -1,13 +1,17 @@
 //! Reads accessors after checking that their bytes are there: the gltf crate trusts what a document says.
 
+use std::cell::Cell;
+
 use gltf::accessor::{DataType, Dimensions};
 
-use super::MeshError;
+use super::{MAX_INDICES, MAX_VERTICES, MeshError};
 
 /// The document and its binary chunk, every accessor known to lie inside.
 pub(super) struct Checked<'a> {
     pub(super) document: &'a gltf::Document,
     blob: &'a [u8],
+    vertices: Cell<usize>,
+    indices: Cell<usize>,
 }
 
 impl<'a> Checked<'a> {
@@ -25,7 +29,18 @@ impl<'a> Checked<'a> {
         for accessor in document.accessors() {
             check_accessor(&accessor)?;
         }
-        Ok(Self { document, blob })
+        Ok(Self { document, blob, vertices: Cell::new(0), indices: Cell::new(0) })
+    }
+
+    /// Counts vertices that are about to be read. Many primitives may name one accessor, so that a small file can
+    /// ask for more than any memory holds.
+    pub(super) fn take_vertices(&self, count: usize) -> Result<(), MeshError> {
+        take(&self.vertices, count, "vertices", MAX_VERTICES)
+    }
+
+    /// The same for indices.
+    pub(super) fn take_indices(&self, count: usize) -> Result<(), MeshError> {
+        take(&self.indices, count, "indices", MAX_INDICES)
     }
 
     /// Gives the readers of the gltf crate the data of a buffer.
@@ -33,6 +48,12 @@ impl<'a> Checked<'a> {
         let blob = self.blob;
         move |_| Some(blob)
     }
+}
+
+fn take(taken: &Cell<usize>, count: usize, what: &'static str, most: usize) -> Result<(), MeshError> {
+    let found = taken.get().saturating_add(count);
+    taken.set(found);
+    if found > most { Err(MeshError::TooMany { what, most, found }) } else { Ok(()) }
 }
 
 fn check_accessor(accessor: &gltf::Accessor<'_>) -> Result<(), MeshError> {

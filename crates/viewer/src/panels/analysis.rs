@@ -9,13 +9,13 @@ use crate::app::App;
 
 const HEIGHT: f32 = 210.0;
 
-/// A turned look at points within [-1, 1].
-struct Look {
+/// A turned view of points within [-1, 1].
+struct Orbit {
     rect: Rect,
     turn: Quat,
 }
 
-impl Look {
+impl Orbit {
     fn at(&self, p: Vec3) -> Pos2 {
         let p = self.turn * p;
         let near = 1.0 / (3.2 - p.y) * 2.9;
@@ -28,20 +28,20 @@ pub(super) fn show(ui: &mut Ui, app: &App) {
     let Some(analysis) = &app.analysis else {
         ui.horizontal(|ui| {
             ui.spinner();
-            ui.label("Working out the principal components");
+            ui.label("Computing the principal components");
         });
         return;
     };
     ui.label("States: every policy's, and your trail");
-    let look = canvas(ui, "states");
-    states(ui.painter(), &look, analysis);
+    let orbit = canvas(ui, "states");
+    states(ui.painter(), &orbit, analysis);
     ui.label("Parameters: policies, edges, your blend");
-    let look = canvas(ui, "parameters");
-    parameters(ui, &look, app, analysis);
+    let orbit = canvas(ui, "parameters");
+    parameters(ui, &orbit, app, analysis);
 }
 
 /// A canvas that can be turned; the angles live with the widget.
-fn canvas(ui: &mut Ui, name: &str) -> Look {
+fn canvas(ui: &mut Ui, name: &str) -> Orbit {
     let (rect, response) = ui.allocate_exact_size(vec2(ui.available_width(), HEIGHT), Sense::drag());
     let id = ui.scope_id().with(name);
     let angles = ui.data_mut(|data| {
@@ -51,40 +51,41 @@ fn canvas(ui: &mut Ui, name: &str) -> Look {
         *angles
     });
     let turn = Quat::from_rotation_x(angles.y) * Quat::from_rotation_z(angles.x);
-    let look = Look { rect, turn };
+    let orbit = Orbit { rect, turn };
     ui.painter().rect_filled(rect, 4.0, ui.visuals().extreme_bg_color);
     for axis in Vec3::AXES {
-        ui.painter().line_segment([look.at(-axis), look.at(axis)], Stroke::new(0.5, Color32::from_gray(90)));
+        ui.painter()
+            .line_segment([orbit.at(-axis), orbit.at(axis)], Stroke::new(0.5, Color32::from_gray(90)));
     }
-    look
+    orbit
 }
 
 fn colour(node: usize) -> Color32 {
     egui::ecolor::Hsva::new((node as f32 * 0.381_966) % 1.0, 0.55, 0.9, 1.0).into()
 }
 
-fn states(painter: &Painter, look: &Look, analysis: &Analysis) {
-    let painter = painter.with_clip_rect(look.rect);
+fn states(painter: &Painter, orbit: &Orbit, analysis: &Analysis) {
+    let painter = painter.with_clip_rect(orbit.rect);
     for point in &analysis.cloud {
-        painter.circle_filled(look.at(point.at), 1.3, colour(point.node).gamma_multiply(0.55));
+        painter.circle_filled(orbit.at(point.at), 1.3, colour(point.node.index()).gamma_multiply(0.55));
     }
-    let trail: Vec<Pos2> = analysis.trail.iter().map(|p| look.at(*p)).collect();
+    let trail: Vec<Pos2> = analysis.trail.iter().map(|p| orbit.at(*p)).collect();
     if let Some(last) = trail.last() {
         painter.circle_filled(*last, 4.0, Color32::WHITE);
     }
     painter.line(trail, Stroke::new(1.5, Color32::WHITE));
 }
 
-fn parameters(ui: &Ui, look: &Look, app: &App, analysis: &Analysis) {
-    let painter = ui.painter().with_clip_rect(look.rect);
+fn parameters(ui: &Ui, orbit: &Orbit, app: &App, analysis: &Analysis) {
+    let painter = ui.painter().with_clip_rect(orbit.rect);
     let graph = app.sim.pack().graph();
     let map = &analysis.parameters;
     for edge in graph.edges() {
-        let [a, b] = edge.nodes.map(|n| look.at(map.nodes[n]));
+        let [a, b] = edge.nodes.map(|n| orbit.at(map.nodes[n.index()]));
         painter.line_segment([a, b], Stroke::new(1.5, ui.visuals().weak_text_color()));
     }
     for (index, node) in graph.nodes().iter().enumerate() {
-        let at = look.at(map.nodes[index]);
+        let at = orbit.at(map.nodes[index]);
         painter.circle_filled(at, 5.0, colour(index));
         let text = ui.visuals().text_color();
         painter.text(
@@ -95,6 +96,6 @@ fn parameters(ui: &Ui, look: &Look, app: &App, analysis: &Analysis) {
             text,
         );
     }
-    let blend = look.at(map.blend(&app.sim.player().report().blend));
+    let blend = orbit.at(map.blend(&app.sim.player().report().blend));
     painter.circle(blend, 5.0, PRESENT, Stroke::new(1.5, REQUESTED));
 }

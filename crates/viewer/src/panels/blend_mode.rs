@@ -1,7 +1,8 @@
-//! How blends become actions, and the ghost that walks beside under another mode.
+//! How blends become actions, and the ghost that walks beside the player under another mode.
 
 use egui::Ui;
-use policy_core::{BlendMode, Evaluation};
+use policy_core::BlendMode;
+use policy_core::training::Evaluation;
 
 use super::WRONG;
 use crate::app::{App, ViewerCommand};
@@ -13,7 +14,7 @@ const TEXTS: [&str; 3] = [
 ];
 
 pub(super) fn show(ui: &mut Ui, app: &App, commands: &mut Vec<ViewerCommand>) {
-    let present = app.sim.overrides.mode;
+    let present = app.sim.blend_mode();
     for (mode, text) in BlendMode::ALL.into_iter().zip(TEXTS) {
         if ui.radio(mode == present, mode.name()).on_hover_text(text).clicked() {
             commands.push(ViewerCommand::Mode(mode));
@@ -27,10 +28,10 @@ pub(super) fn show(ui: &mut Ui, app: &App, commands: &mut Vec<ViewerCommand>) {
     };
     ui.weak(format!("the last tick evaluated {took}"));
     ui.separator();
-    ui.label("Beside it, from the same state:");
-    ui.horizontal(|ui| {
+    ui.label("A ghost from the same state, under another mode:");
+    ui.horizontal_wrapped(|ui| {
         let ghost = app.sim.ghost().map(|g| g.mode());
-        if ui.selectable_label(ghost.is_none(), "nobody").clicked() {
+        if ui.selectable_label(ghost.is_none(), "no ghost").clicked() {
             commands.push(ViewerCommand::Ghost(None));
         }
         for mode in BlendMode::ALL {

@@ -1,4 +1,4 @@
-//! Something blew up: what, and the two ways on.
+//! The physics diverged: what is known, and two ways to continue.
 
 use egui::Ui;
 
@@ -9,11 +9,11 @@ pub(super) fn show(ui: &mut Ui, failure: &Failure, commands: &mut Vec<ViewerComm
     let window = egui::Window::new("The simulation has stopped").collapsible(false).resizable(false);
     window.anchor(egui::Align2::CENTER_CENTER, egui::Vec2::ZERO).show(ui.ctx(), |ui| {
         ui.colored_label(WRONG, &failure.what);
-        if let Some(dump) = &failure.dump {
-            ui.label(format!("The state before it is in {dump}."));
+        if let Some(replay) = &failure.replay {
+            ui.label(format!("The state before it is in the replay file {replay}."));
         }
         ui.horizontal(|ui| {
-            if ui.button("Rewind and go on").clicked() {
+            if ui.button("Rewind and continue").clicked() {
                 commands.push(ViewerCommand::RewindAfterFailure);
             }
             if ui.button("Start again").clicked() {

@@ -1,7 +1,7 @@
 //! The policy graph on a circle: edges with their distance, the blend as a dot, the active skill lit.
 
 use egui::{Align2, Color32, FontId, Pos2, Rect, Sense, Stroke, Ui, vec2};
-use policy_core::Goal;
+use policy_core::{Goal, NodeId, PolicyId};
 
 use super::{PRESENT, REQUESTED};
 use crate::app::{App, ViewerCommand};
@@ -13,7 +13,7 @@ pub(super) fn show(ui: &mut Ui, app: &App, commands: &mut Vec<ViewerCommand>) {
     let graph = app.sim.pack().graph();
     let (rect, response) = ui.allocate_exact_size(vec2(ui.available_width(), HEIGHT), Sense::click());
     let count = graph.nodes().len();
-    let place = |node: usize| on_circle(rect, node, count);
+    let place = |node: NodeId| on_circle(rect, node.index(), count);
     let report = app.sim.player().report();
     let furthest = graph.edges().iter().map(|e| e.distance).fold(f32::MIN_POSITIVE, f32::max);
     let painter = ui.painter();
@@ -26,12 +26,13 @@ pub(super) fn show(ui: &mut Ui, app: &App, commands: &mut Vec<ViewerCommand>) {
         let text = format!("{:.1}", edge.distance);
         painter.text(a.lerp(b, 0.5), Align2::CENTER_CENTER, text, small.clone(), ui.visuals().text_color());
     }
-    let running = report.skill.map(|s| app.sim.pack().skills()[s.skill].policy);
+    let running = report.skill.map(|s| app.sim.pack().skills()[s.skill.index()].policy);
     for (index, node) in graph.nodes().iter().enumerate() {
+        let (id, policy) = (NodeId::new(index), PolicyId::new(index));
         let weight: f32 =
-            report.blend.terms().iter().filter(|t| t.policy == index).map(|t| t.weights[0]).sum();
-        let colour = if running == Some(index) { REQUESTED } else { lit(weight) };
-        let at = place(index);
+            report.blend.terms().iter().filter(|t| t.policy == policy).map(|t| t.weights[0]).sum();
+        let colour = if running == Some(policy) { REQUESTED } else { lit(weight) };
+        let at = place(id);
         painter.circle(at, NODE, colour, Stroke::new(1.5, ui.visuals().text_color()));
         let out = (at - rect.center()).normalized() * 18.0;
         let text = ui.visuals().text_color();
@@ -43,8 +44,8 @@ pub(super) fn show(ui: &mut Ui, app: &App, commands: &mut Vec<ViewerCommand>) {
         painter.circle(at, 5.0, PRESENT, Stroke::new(1.0, Color32::WHITE));
     }
     if let (true, Some(pointer)) = (response.clicked(), response.interact_pointer_pos()) {
-        let near = |n: &usize| place(*n).distance(pointer);
-        let nearest = (0..count).min_by(|a, b| near(a).total_cmp(&near(b)));
+        let near = |n: &NodeId| place(*n).distance(pointer);
+        let nearest = (0..count).map(NodeId::new).min_by(|a, b| near(a).total_cmp(&near(b)));
         if let Some(node) = nearest.filter(|n| near(n) < 2.0 * NODE) {
             commands.push(ViewerCommand::Goal(Some(Goal::Node(node))));
         }
@@ -59,7 +60,7 @@ fn walk_to(ui: &mut Ui, app: &App, commands: &mut Vec<ViewerCommand>) {
         ui.label("Go to");
         for (index, node) in graph.nodes().iter().enumerate() {
             if ui.small_button(&node.name).clicked() {
-                commands.push(ViewerCommand::Goal(Some(Goal::Node(index))));
+                commands.push(ViewerCommand::Goal(Some(Goal::Node(NodeId::new(index)))));
             }
         }
     });
@@ -67,7 +68,7 @@ fn walk_to(ui: &mut Ui, app: &App, commands: &mut Vec<ViewerCommand>) {
     let (from, to) = (report.position.nearest_node(), report.goal.nearest_node());
     let route = graph.routes().route(from, to);
     if route.len() > 1 {
-        let names: Vec<&str> = route.iter().map(|&n| graph.nodes()[n].name.as_str()).collect();
+        let names: Vec<&str> = route.iter().map(|&n| graph.node(n).name.as_str()).collect();
         ui.weak(format!("{}, distance {:.1}", names.join(" > "), graph.routes().cost(from, to)));
     }
 }

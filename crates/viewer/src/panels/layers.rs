@@ -1,6 +1,7 @@
 //! Blending per layer: one slider for all, or one each; presets.
 
 use egui::{ComboBox, Slider, Ui};
+use policy_core::NodeId;
 
 use crate::app::{App, Layers, Preset, ViewerCommand};
 
@@ -28,18 +29,18 @@ pub(super) fn show(ui: &mut Ui, app: &App, commands: &mut Vec<ViewerCommand>) {
         }
     }
     presets(ui, app, &mut layers, commands);
-    // Whoever moves a slider wants it to count.
+    // Moving a slider switches the sliders on.
     layers.active |= layers.t != app.layers.t;
     if layers != app.layers {
         commands.push(ViewerCommand::Layers(layers));
     }
 }
 
-fn policy(ui: &mut Ui, app: &App, label: &str, chosen: &mut usize) {
+fn policy(ui: &mut Ui, app: &App, label: &str, chosen: &mut NodeId) {
     let nodes = app.sim.pack().graph().nodes();
-    ComboBox::new(label, label).width(80.0).selected_text(&nodes[*chosen].name).show_ui(ui, |ui| {
+    ComboBox::new(label, label).width(80.0).selected_text(&nodes[chosen.index()].name).show_ui(ui, |ui| {
         for (index, node) in nodes.iter().enumerate() {
-            ui.selectable_value(chosen, index, &node.name);
+            ui.selectable_value(chosen, NodeId::new(index), &node.name);
         }
     });
 }

@@ -6,6 +6,7 @@ mod failure;
 mod graph;
 mod help;
 mod layers;
+mod leave;
 mod pad;
 mod paths;
 mod physics;
@@ -16,7 +17,8 @@ mod view;
 
 use egui::{Color32, Frame, Margin, Rect, Ui};
 
-use crate::app::{App, PanelKind, Side, ViewerCommand};
+use crate::app::{self, App, PanelKind, Side, ViewerCommand};
+use crate::text;
 
 /// Colour of what is asked for.
 pub(crate) const REQUESTED: Color32 = Color32::from_rgb(0xe8, 0x8a, 0x3c);
@@ -27,18 +29,24 @@ pub(crate) const WRONG: Color32 = Color32::from_rgb(0xe0, 0x5a, 0x4e);
 
 /// Width of the sides, points.
 const SIDE_WIDTH: f32 = 290.0;
+/// Least width of the picture beside them, points.
+const LEAST_VIEW: f32 = 300.0;
+/// Longest message to the user, characters.
+const LONGEST_NOTICE: usize = 500;
 
-/// Draws everything; answers the part of the window that no panel covers.
+/// Draws everything; returns the part of the window that no panel covers.
 pub(crate) fn show(ui: &mut Ui, app: &App, commands: &mut Vec<ViewerCommand>) -> Rect {
     if !app.layout.hidden {
         bar(ui, app, commands);
-        side(ui, app, Side::Left, commands);
-        side(ui, app, Side::Right, commands);
+        columns(ui, app, commands);
     }
     let free = ui.available_rect_before_wrap();
     status(ui, app, free, commands);
     if app.help {
         help::show(ui, app, commands);
+    }
+    if app.leaving {
+        leave::show(ui, app, commands);
     }
     if let Some(failure) = &app.failure {
         failure::show(ui, failure, commands);
@@ -68,10 +76,27 @@ fn bar(ui: &mut Ui, app: &App, commands: &mut Vec<ViewerCommand>) {
     });
 }
 
-/// The panels of one side, from top to bottom.
-fn side(ui: &mut Ui, app: &App, side: Side, commands: &mut Vec<ViewerCommand>) {
-    let open = || app.layout.open.iter().filter(|(_, s)| *s == side);
-    if open().next().is_none() {
+/// The panels on both sides of the picture. Where there is too little room they share one column, and where there
+/// is too little even for that none is shown.
+fn columns(ui: &mut Ui, app: &App, commands: &mut Vec<ViewerCommand>) {
+    let on = |side: Side| -> Vec<PanelKind> {
+        app.layout.open.iter().filter(|(_, s)| *s == side).map(|(kind, _)| *kind).collect()
+    };
+    let (mut left, mut right) = (on(Side::Left), on(Side::Right));
+    let room = ui.available_width();
+    if room < SIDE_WIDTH + LEAST_VIEW {
+        return;
+    }
+    if room < 2.0 * SIDE_WIDTH + LEAST_VIEW && !left.is_empty() {
+        left.append(&mut right);
+    }
+    column(ui, app, (Side::Left, &left), commands);
+    column(ui, app, (Side::Right, &right), commands);
+}
+
+/// Panels from top to bottom.
+fn column(ui: &mut Ui, app: &App, (side, kinds): (Side, &[PanelKind]), commands: &mut Vec<ViewerCommand>) {
+    if kinds.is_empty() {
         return;
     }
     let panel = match side {
@@ -80,7 +105,7 @@ fn side(ui: &mut Ui, app: &App, side: Side, commands: &mut Vec<ViewerCommand>) {
     };
     panel.default_size(SIDE_WIDTH).frame(frame()).show(ui, |ui| {
         egui::ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
-            for (kind, _) in open() {
+            for kind in kinds {
                 titled(ui, app, *kind, commands);
             }
         });
@@ -119,22 +144,14 @@ fn titled(ui: &mut Ui, app: &App, kind: PanelKind, commands: &mut Vec<ViewerComm
 
 /// One line at the foot of the picture: what the character does, and messages.
 fn status(ui: &mut Ui, app: &App, free: Rect, commands: &mut Vec<ViewerCommand>) {
-    let nodes = app.sim.pack().graph().nodes();
     let player = app.sim.player();
-    let position = player.report().position;
-    let place = match position.as_node() {
-        Some(node) => nodes[node].name.clone(),
-        None => {
-            format!("{} - {} {:.0} %", nodes[position.from].name, nodes[position.to].name, 100.0 * position.t)
-        }
-    };
-    let skill = player.report().skill.map(|s| app.sim.pack().skills()[s.skill].name.as_str());
+    let skill = player.report().skill.map(|s| app.sim.pack().skills()[s.skill.index()].name.as_str());
     let state = if app.clock.paused { "  paused" } else { "" };
     let text = match app.sim.playback() {
         Some(clip) => {
             format!("{}   {:.2} of {:.2} s{state}", clip.clip(), clip.secs(app.alpha()), clip.duration())
         }
-        None => format!("{}   {:.2} m/s{state}", skill.unwrap_or(&place), player.speed()),
+        None => format!("{}   {:.2} m/s{state}", skill.unwrap_or(&app::place(app)), player.speed()),
     };
     let at = free.left_bottom() + egui::vec2(14.0, -12.0);
     let painter = ui.painter();
@@ -148,7 +165,7 @@ fn status(ui: &mut Ui, app: &App, free: Rect, commands: &mut Vec<ViewerCommand>)
         area.show(ui.ctx(), |ui| {
             frame().show(ui, |ui| {
                 ui.set_max_width(460.0);
-                ui.colored_label(REQUESTED, notice);
+                ui.colored_label(REQUESTED, text::printable(notice, LONGEST_NOTICE));
                 if ui.button("Dismiss").clicked() {
                     commands.push(ViewerCommand::DismissNotice);
                 }

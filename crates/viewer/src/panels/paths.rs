@@ -1,7 +1,9 @@
-//! Every path as a ruler: two cursors, asked for and so; drag to override the trigger, click a node to walk there.
+//! Every path as a ruler with two cursors, the requested and the present coordinate. Drag to override the trigger,
+//! click a node to go there.
 
 use egui::{FontId, Pos2, Rect, Sense, Stroke, Ui, pos2, vec2};
-use policy_core::{Goal, Path};
+use policy_core::training::Path;
+use policy_core::{Goal, PathId};
 
 use super::{PRESENT, REQUESTED};
 use crate::app::{App, ViewerCommand};
@@ -17,7 +19,7 @@ pub(super) fn show(ui: &mut Ui, app: &App, commands: &mut Vec<ViewerCommand>) {
         ui.label("This pack has no paths.");
     }
     for (index, path) in graph.paths().iter().enumerate() {
-        ruler(ui, app, (index, path), commands);
+        ruler(ui, app, (PathId::new(index), path), commands);
     }
     let overridden = app.sim.overrides.goal.is_some();
     ui.horizontal(|ui| {
@@ -29,19 +31,19 @@ pub(super) fn show(ui: &mut Ui, app: &App, commands: &mut Vec<ViewerCommand>) {
     });
 }
 
-fn ruler(ui: &mut Ui, app: &App, (index, path): (usize, &Path), commands: &mut Vec<ViewerCommand>) {
+fn ruler(ui: &mut Ui, app: &App, (id, path): (PathId, &Path), commands: &mut Vec<ViewerCommand>) {
     let player = app.sim.player();
     let (now, goal) = (player.report().position, player.report().goal);
     ui.horizontal(|ui| {
-        ui.strong(&path.name);
+        ui.strong(path.name());
         // The slider says the same in numbers, and can be typed into.
         let shown = path.coordinate(goal).unwrap_or(0.0);
         let mut coordinate = shown;
         let slider =
             egui::DragValue::new(&mut coordinate).speed(0.01).range(0.0..=path.end()).fixed_decimals(2);
-        let response = ui.add(slider).on_hover_text(format!("coordinate on the path {}", path.name));
+        let response = ui.add(slider).on_hover_text(format!("coordinate on the path {}", path.name()));
         if response.changed() {
-            commands.push(ViewerCommand::Goal(Some(Goal::Path { path: index, coordinate })));
+            commands.push(ViewerCommand::Goal(Some(Goal::Path { path: id, coordinate })));
         }
         let travelling =
             path.coordinate(now).map_or_else(|| "off this path".into(), |c| format!("now {c:.2}"));
@@ -65,9 +67,9 @@ fn ruler(ui: &mut Ui, app: &App, (index, path): (usize, &Path), commands: &mut V
     let coordinate = ((pointer.x - line.left()) / line.width()).clamp(0.0, 1.0) * path.end();
     let node = coordinate.round();
     if response.clicked() && (place(node).x - pointer.x).abs() < NODE_REACH {
-        commands.push(ViewerCommand::Goal(Some(Goal::Node(path.nodes[node as usize]))));
+        commands.push(ViewerCommand::Goal(Some(Goal::Node(path.nodes()[node as usize]))));
     } else if response.dragged() || response.clicked() {
-        commands.push(ViewerCommand::Goal(Some(Goal::Path { path: index, coordinate })));
+        commands.push(ViewerCommand::Goal(Some(Goal::Path { path: id, coordinate })));
     }
 }
 
@@ -75,10 +77,10 @@ fn draw(ui: &Ui, app: &App, path: &Path, place: &impl Fn(f32) -> Pos2) {
     let painter = ui.painter();
     let weak = ui.visuals().weak_text_color();
     painter.line_segment([place(0.0), place(path.end())], Stroke::new(3.0, weak));
-    for (i, &node) in path.nodes.iter().enumerate() {
+    for (i, &node) in path.nodes().iter().enumerate() {
         let at = place(i as f32);
         painter.circle(at, 5.0, ui.visuals().extreme_bg_color, Stroke::new(1.5, ui.visuals().text_color()));
-        let name = &app.sim.pack().graph().nodes()[node].name;
+        let name = &app.sim.pack().graph().node(node).name;
         let label =
             painter.layout_no_wrap(name.clone(), FontId::proportional(12.0), ui.visuals().text_color());
         // Centred, but a long name at an end stays inside the panel.

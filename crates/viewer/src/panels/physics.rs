@@ -1,9 +1,9 @@
-//! Time and matter: pause, steps, the last ten seconds, speed, gravity, friction, strength, ground, crowd.
+//! Time and physics: pause, steps, the last ten seconds, speed, gravity, friction, strength, mass, ground, crowd.
 
 use egui::{Slider, Ui};
 
 use crate::app::{App, Clock, ViewerCommand};
-use crate::sim::{GroundKind, MAX_CHARACTERS, TICK_SECS};
+use crate::sim::{GroundKind, LEAST_FRICTION, MAX_CHARACTERS};
 
 pub(super) fn show(ui: &mut Ui, app: &App, commands: &mut Vec<ViewerCommand>) {
     time(ui, app, commands);
@@ -28,7 +28,7 @@ pub(super) fn show(ui: &mut Ui, app: &App, commands: &mut Vec<ViewerCommand>) {
 
 fn time(ui: &mut Ui, app: &App, commands: &mut Vec<ViewerCommand>) {
     ui.horizontal(|ui| {
-        let (label, pause) = if app.clock.paused { ("Go on", false) } else { ("Pause", true) };
+        let (label, pause) = if app.clock.paused { ("Play", false) } else { ("Pause", true) };
         if ui.button(label).clicked() {
             commands.push(ViewerCommand::Pause(pause));
         }
@@ -43,11 +43,15 @@ fn time(ui: &mut Ui, app: &App, commands: &mut Vec<ViewerCommand>) {
         }
     });
     let (kept, age) = app.sim.history();
-    let mut ago = 0.0 - age as f32 * TICK_SECS;
-    let reach = (kept as f32 * TICK_SECS).max(TICK_SECS);
+    let tick_secs = app.sim.tick_secs();
+    let mut ago = 0.0 - age as f32 * tick_secs;
+    let reach = (kept as f32 * tick_secs).max(tick_secs);
     let slider = Slider::new(&mut ago, -reach..=0.0).text("seconds ago").fixed_decimals(2);
-    if ui.add(slider).changed() {
-        commands.push(ViewerCommand::Scrub(((-ago / TICK_SECS).round() as usize).min(kept)));
+    let moved = ui.add(slider).changed();
+    let wanted = ((-ago / tick_secs).round() as usize).min(kept);
+    // The slider rounds to what it shows: that alone is no wish to go back.
+    if moved && wanted != age {
+        commands.push(ViewerCommand::Scrub(wanted));
     }
     let mut step = Clock::SPEEDS.iter().position(|s| *s >= app.clock.speed * 0.99).unwrap_or(0);
     let last = Clock::SPEEDS.len() - 1;
@@ -65,8 +69,9 @@ fn matter(ui: &mut Ui, app: &App, commands: &mut Vec<ViewerCommand>) {
     let mut settings = app.sim.model().settings();
     let before = settings;
     ui.add(Slider::new(&mut settings.gravity, 0.0..=3.0).text("gravity"));
-    ui.add(Slider::new(&mut settings.friction, 0.0..=3.0).text("friction"));
+    ui.add(Slider::new(&mut settings.friction, LEAST_FRICTION..=3.0).text("friction"));
     ui.add(Slider::new(&mut settings.strength, 0.0..=3.0).text("strength"));
+    ui.add(Slider::new(&mut settings.mass, 0.2..=3.0).text("mass"));
     if settings != before {
         commands.push(ViewerCommand::Settings(settings));
     }

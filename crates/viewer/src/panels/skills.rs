@@ -1,8 +1,8 @@
-//! Episodic skills: start them, see how far they are, and what the discriminator thinks.
+//! Episodic skills: start them, see their progress and the discriminator's score.
 
 use egui::{ProgressBar, Ui};
 use egui_plot::{HLine, Line, Plot, PlotPoints};
-use policy_core::Skill;
+use policy_core::{Skill, SkillId};
 
 use super::{PRESENT, REQUESTED};
 use crate::app::{App, ViewerCommand};
@@ -15,21 +15,22 @@ pub(super) fn show(ui: &mut Ui, app: &App, commands: &mut Vec<ViewerCommand>) {
     }
     ui.horizontal_wrapped(|ui| {
         for (index, skill) in pack.skills().iter().enumerate() {
-            let running = report.skill.is_some_and(|s| s.skill == index);
-            let waiting = report.pending_skill == Some(index);
+            let id = SkillId::new(index);
+            let running = report.skill.is_some_and(|s| s.skill == id);
+            let waiting = report.pending_skill == Some(id);
             let mark = if waiting { " ..." } else { "" };
             if ui.add(egui::Button::selectable(running, format!("{}{mark}", skill.name))).clicked() {
-                commands.push(ViewerCommand::Skill(index));
+                commands.push(ViewerCommand::Skill(id));
             }
         }
     });
     if let Some(progress) = report.skill {
-        let skill = &pack.skills()[progress.skill];
+        let skill = &pack.skills()[progress.skill.index()];
         let share = progress.seconds / skill.end.limit_seconds.max(1e-3);
         ui.add(ProgressBar::new(share).text(format!("{} {:.1} s", skill.name, progress.seconds)));
-        gauge(ui, skill, progress.score, progress.counted);
+        gauge(ui, skill, progress.score, progress.held_seconds);
     }
-    let threshold = report.skill.map(|s| pack.skills()[s.skill].end);
+    let threshold = report.skill.map(|s| pack.skills()[s.skill.index()].end);
     let plot =
         Plot::new("score").height(70.0).include_y(0.0).include_y(1.0).allow_drag(false).allow_zoom(false);
     plot.allow_scroll(false).show_axes([false, true]).show(ui, |plot| {
@@ -45,7 +46,7 @@ pub(super) fn show(ui: &mut Ui, app: &App, commands: &mut Vec<ViewerCommand>) {
 }
 
 /// The discriminator's score between 0 and 1, with the threshold and the band of its hysteresis.
-fn gauge(ui: &mut Ui, skill: &Skill, score: Option<f32>, counted: u32) {
+fn gauge(ui: &mut Ui, skill: &Skill, score: Option<f32>, held: f32) {
     if skill.discriminator.is_none() {
         ui.weak("ends by time");
         return;
@@ -66,5 +67,5 @@ fn gauge(ui: &mut Ui, skill: &Skill, score: Option<f32>, counted: u32) {
     painter.rect_filled(band(0.0, score.unwrap_or(0.0)), 2.0, PRESENT.gamma_multiply(0.7));
     painter.vline(at(end.threshold), rect.y_range(), egui::Stroke::new(2.0, REQUESTED));
     let text = score.map_or_else(|| "not enough motion seen yet".into(), |s| format!("score {s:.2}"));
-    ui.label(format!("{text}, {counted} of {} ticks", end.ticks));
+    ui.label(format!("{text}, held {held:.2} of {:.2} s", end.hold_seconds));
 }

@@ -16,7 +16,7 @@ impl Growing {
         Self { buffer: create(device, label, usage, 4096), usage, label }
     }
 
-    /// Replaces the contents; answers true when the buffer is another one now.
+    /// Replaces the contents; returns true when the buffer is another one now.
     pub(super) fn write<T: Pod>(&mut self, device: &wgpu::Device, queue: &wgpu::Queue, data: &[T]) -> bool {
         let bytes: &[u8] = bytemuck::cast_slice(data);
         let grown = bytes.len() as u64 > self.buffer.size();

@@ -2,8 +2,8 @@
 
 use bytemuck::{Pod, Zeroable};
 use glam::{Mat4, Vec2, Vec3};
-use policy_core::Body;
 
+use super::appearance::ContactPatch;
 use super::config::RenderConfig;
 use super::scene::{Figure, Scene};
 
@@ -128,30 +128,16 @@ impl SunView {
     }
 }
 
-/// The dark patches under a figure: sharp ones under hands and feet, a wide one under the trunk.
-pub(super) fn contacts(figure: &Figure, out: &mut Vec<ContactData>) {
-    // Body, middle in its frame, half length along its x axis, half width, height at which it vanishes, darkness.
-    const PATCHES: [(Body, Vec3, f32, f32, f32, f32); 12] = [
-        (Body::RightFoot, Vec3::new(0.045, 0.0, -0.04), 0.17, 0.105, 0.22, 0.75),
-        (Body::LeftFoot, Vec3::new(0.045, 0.0, -0.04), 0.17, 0.105, 0.22, 0.75),
-        (Body::RightHand, Vec3::new(0.0, 0.0, -0.03), 0.10, 0.10, 0.22, 0.5),
-        (Body::LeftHand, Vec3::new(0.0, 0.0, -0.03), 0.10, 0.10, 0.22, 0.5),
-        (Body::RightShin, Vec3::new(0.0, 0.0, -0.1), 0.2, 0.2, 0.40, 0.45),
-        (Body::LeftShin, Vec3::new(0.0, 0.0, -0.1), 0.2, 0.2, 0.40, 0.45),
-        (Body::RightLowerArm, Vec3::new(0.0, 0.0, -0.1), 0.17, 0.17, 0.35, 0.4),
-        (Body::LeftLowerArm, Vec3::new(0.0, 0.0, -0.1), 0.17, 0.17, 0.35, 0.4),
-        (Body::Head, Vec3::new(0.0, 0.0, 0.15), 0.22, 0.22, 0.45, 0.55),
-        (Body::Torso, Vec3::new(0.0, 0.0, 0.1), 0.36, 0.36, 0.7, 0.65),
-        (Body::Pelvis, Vec3::new(0.0, 0.0, 0.05), 0.36, 0.36, 0.7, 0.65),
-        (Body::Pelvis, Vec3::new(0.0, 0.0, 0.05), 0.7, 0.7, 1.9, 0.30),
-    ];
+/// Writes the dark patches under a figure.
+pub(super) fn contacts(patches: &[ContactPatch], figure: &Figure, out: &mut Vec<ContactData>) {
     let slope = Vec2::from(figure.slope);
-    for (body, middle, length, width, vanish, darkness) in PATCHES {
-        let (position, rotation) = (figure.positions[body.index()], figure.rotations[body.index()]);
-        let at = position + rotation * middle;
+    for patch in patches {
+        let i = patch.body.index();
+        let (position, rotation) = (figure.positions[i], figure.rotations[i]);
+        let at = position + rotation * patch.middle;
         let ground = figure.ground + slope.dot((at - figure.positions[0]).truncate());
         let height = (at.z - ground).max(0.0);
-        let near = 1.0 - height / vanish;
+        let near = 1.0 - height / patch.vanish;
         if near <= 0.0 {
             continue;
         }
@@ -159,9 +145,9 @@ pub(super) fn contacts(figure: &Figure, out: &mut Vec<ContactData>) {
         let grown = 1.0 + 0.6 * (1.0 - near);
         let on_ground = |v: Vec2| v.extend(slope.dot(v)).extend(0.0).to_array();
         out.push(ContactData {
-            centre: [at.x, at.y, ground + 0.004, darkness * near],
-            along: on_ground(forward * length * grown),
-            across: on_ground(forward.perp() * width * grown),
+            centre: [at.x, at.y, ground + 0.004, patch.darkness * near],
+            along: on_ground(forward * patch.half_length * grown),
+            across: on_ground(forward.perp() * patch.half_width * grown),
         });
     }
 }

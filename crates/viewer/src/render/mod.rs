@@ -4,6 +4,7 @@
 //! rewritten for every picture. It draws into any view of the format that it was made for, and knows nothing of
 //! windows, physics or panels.
 
+mod appearance;
 mod buffers;
 mod config;
 mod gpu_data;
@@ -16,7 +17,7 @@ mod targets;
 mod upload;
 
 use crate::gpu::Gpu;
-use crate::mesh::SkinnedMesh;
+pub use appearance::Appearance;
 use buffers::{Growing, fixed};
 pub use config::{Light, RenderConfig};
 use gpu_data::FrameData;
@@ -37,8 +38,9 @@ pub struct Renderer {
     format: wgpu::TextureFormat,
     layouts: Layouts,
     pipelines: Pipelines,
-    mesh: SkinnedMesh,
-    mesh_buffers: MeshBuffers,
+    appearance: Appearance,
+    /// `None` without a mesh.
+    mesh_buffers: Option<MeshBuffers>,
     ground: (wgpu::Buffer, u32),
     solids: (wgpu::Buffer, [std::ops::Range<u32>; 5]),
     shadow_map: wgpu::TextureView,
@@ -57,12 +59,12 @@ pub struct Renderer {
 impl Renderer {
     /// A renderer for views of `format`, which should not be an sRGB format.
     #[must_use]
-    pub fn new(gpu: &Gpu, format: wgpu::TextureFormat, config: RenderConfig, mesh: SkinnedMesh) -> Self {
+    pub fn new(gpu: &Gpu, format: wgpu::TextureFormat, config: RenderConfig, appearance: Appearance) -> Self {
         use wgpu::BufferUsages as Usage;
         let device = &gpu.device;
         let layouts = Layouts::new(device);
         let pipelines = Pipelines::new(device, &layouts, format, &config);
-        let mesh_buffers = MeshBuffers::new(device, &layouts, &mesh);
+        let mesh_buffers = appearance.mesh().map(|mesh| MeshBuffers::new(device, &layouts, mesh));
         let (solid_vertices, ranges) = solids::solids();
         let shadow_map = targets::shadow_map(device, config.shadow_size);
         let shadow_group = shadow_group(device, &layouts, &shadow_map);
@@ -88,7 +90,7 @@ impl Renderer {
             format,
             layouts,
             pipelines,
-            mesh,
+            appearance,
             mesh_buffers,
             shadow_map,
             shadow_group,
@@ -100,16 +102,17 @@ impl Renderer {
         }
     }
 
-    /// The humanoid.
+    /// How characters are drawn.
     #[must_use]
-    pub fn mesh(&self) -> &SkinnedMesh {
-        &self.mesh
+    pub fn appearance(&self) -> &Appearance {
+        &self.appearance
     }
 
-    /// Puts another humanoid in the place of the present one.
-    pub fn set_mesh(&mut self, mesh: SkinnedMesh) {
-        self.mesh_buffers = MeshBuffers::new(&self.gpu.device, &self.layouts, &mesh);
-        self.mesh = mesh;
+    /// Draws characters in another way from now on.
+    pub fn set_appearance(&mut self, appearance: Appearance) {
+        let new = |mesh| MeshBuffers::new(&self.gpu.device, &self.layouts, mesh);
+        self.mesh_buffers = appearance.mesh().map(new);
+        self.appearance = appearance;
     }
 
     /// Puts other ground under the characters; `None` is flat at height 0.
@@ -148,10 +151,10 @@ impl Renderer {
     }
 
     /// Level of detail for so many figures.
-    fn level(&self, figures: u32) -> &model::LevelBuffers {
+    fn level<'a>(&self, buffers: &'a MeshBuffers, figures: u32) -> &'a model::LevelBuffers {
         let coarse = figures as usize > self.config.coarse_above;
-        let last = self.mesh_buffers.levels.len() - 1;
-        &self.mesh_buffers.levels[if coarse { last } else { self.config.finest.min(last) }]
+        let last = buffers.levels.len() - 1;
+        &buffers.levels[if coarse { last } else { self.config.finest.min(last) }]
     }
 
     fn draw_shadows(&self, encoder: &mut wgpu::CommandEncoder, counts: &Counts) {
@@ -160,11 +163,13 @@ impl Renderer {
             depth_stencil_attachment: Some(depth_attachment(&self.shadow_map, wgpu::StoreOp::Store)),
             ..Default::default()
         });
+        // A shadow's edge is softer than the coarse mesh is coarse.
+        let Some(level) = self.mesh_buffers.as_ref().and_then(|buffers| buffers.levels.last()) else {
+            return;
+        };
         if counts.figures == 0 {
             return;
         }
-        // A shadow's edge is softer than the coarse mesh is coarse.
-        let level = &self.mesh_buffers.levels[self.mesh_buffers.levels.len() - 1];
         pass.set_pipeline(&self.pipelines.skinned_shadow);
         pass.set_bind_group(0, &self.frame_group, &[]);
         pass.set_bind_group(2, &self.figures_group, &[]);
@@ -215,16 +220,17 @@ impl Renderer {
 
     /// One draw call for each material, however many figures there are.
     fn draw_figures(&self, pass: &mut wgpu::RenderPass<'_>, counts: &Counts) {
+        let Some(buffers) = &self.mesh_buffers else { return };
         if counts.figures == 0 || counts.hide_figures {
             return;
         }
-        let level = self.level(counts.figures);
+        let level = self.level(buffers, counts.figures);
         pass.set_pipeline(&self.pipelines.skinned);
         pass.set_bind_group(2, &self.figures_group, &[]);
         pass.set_vertex_buffer(0, level.vertices.slice(..));
         pass.set_index_buffer(level.indices.slice(..), wgpu::IndexFormat::Uint32);
         for (material, indices) in &level.parts {
-            pass.set_bind_group(3, &self.mesh_buffers.materials[*material], &[]);
+            pass.set_bind_group(3, &buffers.materials[*material], &[]);
             pass.draw_indexed(indices.clone(), 0, 0..counts.figures);
         }
     }

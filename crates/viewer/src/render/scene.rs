@@ -30,15 +30,15 @@ impl Default for View {
 }
 
 /// A character.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Figure {
-    /// Origins of the body frames, in the order of [`policy_core::Body`].
-    pub positions: [Vec3; 15],
-    /// `world_from_body`.
-    pub rotations: [Quat; 15],
+    /// Origins of the body frames, in the order of the skeleton.
+    pub positions: Vec<Vec3>,
+    /// `world_from_body`, in the same order.
+    pub rotations: Vec<Quat>,
     /// Colour of its clothes and how much of it, 0 to 1.
     pub tint: [f32; 4],
-    /// Height of the ground below its pelvis.
+    /// Height of the ground below its root body.
     pub ground: f32,
     /// How that height changes along x and y.
     pub slope: [f32; 2],

@@ -20,15 +20,18 @@ impl Renderer {
         queue.write_buffer(&self.frame, 0, bytemuck::bytes_of(&FrameData::new(scene, aspect, &self.config)));
 
         let figures = &scene.figures;
-        let joints = self.mesh.joints.len();
+        let mesh = self.appearance.mesh();
+        let joints = mesh.map_or(0, |mesh| mesh.joints.len());
         let mut palette = Vec::with_capacity(figures.len() * joints);
         let mut instances = Vec::with_capacity(figures.len());
         let mut patches: Vec<ContactData> = Vec::new();
         for figure in figures {
             let first = palette.len() as u32;
             instances.push(InstanceData { tint: figure.tint, ground: figure.ground, first, padding: [0; 2] });
-            self.mesh.palette_into(&figure.positions, &figure.rotations, &mut palette);
-            contacts(figure, &mut patches);
+            if let Some(mesh) = mesh {
+                mesh.palette_into(&figure.positions, &figure.rotations, &mut palette);
+            }
+            contacts(&self.appearance.patches, figure, &mut patches);
         }
         let grown =
             self.palette.write(device, queue, &palette) | self.instances.write(device, queue, &instances);

@@ -4,7 +4,7 @@
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum SimError {
-    /// The humanoid, the ground or a setting.
+    /// The body, the ground or a setting.
     #[error(transparent)]
     Model(#[from] physics_bridge::ModelError),
     /// The threads of the crowd.

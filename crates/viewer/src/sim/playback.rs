@@ -1,18 +1,21 @@
-//! Plays a clip of poses in the place of the simulation: forward kinematics alone, nothing is stepped.
+//! Plays a clip of poses instead of the simulation: forward kinematics alone, nothing is stepped.
 
 use std::path::Path;
 
-use physics_bridge::{BodyPoses, CONTROL_HZ, Character, Model, QVEL_LEN};
+use physics_bridge::{BodyPoses, Character, Model, Pose};
 
 use super::{Simulation, interpolated};
-use crate::poses::{Poses, PosesError};
+use crate::pose_clip::{PoseClip, PoseClipError};
 
 /// A clip and how far it has been played, round and round.
 #[derive(Clone, Debug)]
 pub struct Playback {
-    poses: Poses,
+    poses: PoseClip,
     /// Where the bodies are in each pose.
     bodies: Vec<BodyPoses>,
+    /// Velocities of a body at rest.
+    at_rest: Vec<f64>,
+    tick_secs: f64,
     ticks: u64,
 }
 
@@ -21,19 +24,21 @@ impl Playback {
     ///
     /// # Errors
     /// When the file is no good, or holds a pose that no character can take.
-    pub fn load(path: &Path, model: &Model) -> Result<Self, PosesError> {
-        let poses = Poses::load(path)?;
+    pub fn load(path: &Path, model: &Model) -> Result<Self, PoseClipError> {
+        let Pose { qpos, qvel: at_rest } = Pose::new(model.skeleton());
+        let poses = PoseClip::load(path, qpos.len())?;
         let mut character = Character::new(model);
-        let mut bodies = vec![BodyPoses::default(); poses.qpos.len()];
+        let mut bodies = vec![BodyPoses::new(model.skeleton()); poses.qpos.len()];
         for (row, (qpos, bodies)) in poses.qpos.iter().zip(&mut bodies).enumerate() {
-            character.set_pose(qpos, &[0.0; QVEL_LEN]).map_err(|source| PosesError::Pose {
+            character.set_pose(qpos, &at_rest).map_err(|source| PoseClipError::Pose {
                 path: path.to_owned(),
                 row,
                 source,
             })?;
             character.poses_into(bodies);
         }
-        Ok(Self { poses, bodies, ticks: 0 })
+        let tick_secs = 1.0 / f64::from(model.control_hz());
+        Ok(Self { poses, bodies, at_rest, tick_secs, ticks: 0 })
     }
 
     /// Name of the clip.
@@ -64,7 +69,7 @@ impl Playback {
     #[must_use]
     pub fn secs(&self, alpha: f32) -> f64 {
         let ticks = (self.ticks as f64 - 1.0 + f64::from(alpha)).max(0.0);
-        (ticks / f64::from(CONTROL_HZ)).rem_euclid(self.duration())
+        (ticks * self.tick_secs).rem_euclid(self.duration())
     }
 
     /// Where the bodies are `alpha` of the way into the last tick. Between two poses positions are interpolated
@@ -79,7 +84,7 @@ impl Playback {
     /// True when the last tick has gone on from the end to the start.
     #[must_use]
     pub fn has_restarted(&self) -> bool {
-        let cycle = |ticks: u64| (ticks as f64 / f64::from(CONTROL_HZ) / self.duration()).floor();
+        let cycle = |ticks: u64| (ticks as f64 * self.tick_secs / self.duration()).floor();
         self.ticks > 0 && cycle(self.ticks) > cycle(self.ticks - 1)
     }
 
@@ -92,13 +97,13 @@ impl Playback {
 }
 
 impl Simulation {
-    /// Shows a clip from now on: the player's character is posed, nobody is simulated.
+    /// Shows a clip from now on: the player's character is posed, nothing is simulated.
     pub fn play(&mut self, playback: Playback) {
         self.playback = Some(playback);
         self.show_pose(0);
     }
 
-    /// The clip that is shown in the place of the simulation.
+    /// The clip that is shown instead of the simulation.
     #[must_use]
     pub fn playback(&self) -> Option<&Playback> {
         self.playback.as_ref()
@@ -112,19 +117,19 @@ impl Simulation {
     pub fn poses(&self, index: usize, alpha: f32) -> BodyPoses {
         match &self.playback {
             Some(playback) if index == 0 => playback.poses(alpha),
-            _ => self.actors[index].poses(alpha),
+            _ => self.steered[index].poses(alpha),
         }
     }
 
-    /// Puts the player's character where the clip has it after so many ticks, for whoever senses it.
+    /// Puts the player's character where the clip has it after so many ticks.
     pub(super) fn show_pose(&mut self, ticks: u64) {
         let Some(playback) = &mut self.playback else { return };
         playback.ticks = ticks;
         let (row, _) = playback.place(1.0);
         let character = self.crowd.character_mut(0);
         // Every pose was tried when the clip was loaded.
-        if character.set_pose(&playback.poses.qpos[row], &[0.0; QVEL_LEN]).is_ok() {
-            self.actors[0].restart(character);
+        if character.set_pose(&playback.poses.qpos[row], &playback.at_rest).is_ok() {
+            self.steered[0].restart(character);
         }
     }
 

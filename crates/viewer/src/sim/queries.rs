@@ -3,9 +3,9 @@
 use std::sync::Arc;
 
 use physics_bridge::{BodyPoses, Character, Model};
-use policy_core::CharacterPack;
+use policy_core::{BlendMode, CharacterPack};
 
-use super::{Actor, Ghost, SimConfig, Simulation, TickTimes, Totals};
+use super::{Ghost, SimConfig, Simulation, SteeredCharacter, TickTimes, Totals};
 
 impl Simulation {
     /// The pack.
@@ -28,14 +28,26 @@ impl Simulation {
 
     /// Characters, the player's first.
     #[must_use]
-    pub fn actors(&self) -> &[Actor] {
-        &self.actors
+    pub fn characters(&self) -> &[SteeredCharacter] {
+        &self.steered
     }
 
     /// The player's character.
     #[must_use]
-    pub fn player(&self) -> &Actor {
-        &self.actors[0]
+    pub fn player(&self) -> &SteeredCharacter {
+        &self.steered[0]
+    }
+
+    /// Length of a control tick, seconds.
+    #[must_use]
+    pub fn tick_secs(&self) -> f32 {
+        1.0 / self.model.control_hz()
+    }
+
+    /// How the player's controller makes an action of a blend.
+    #[must_use]
+    pub fn blend_mode(&self) -> BlendMode {
+        self.player().controller.config().blend_mode
     }
 
     /// The physics of a character.

@@ -2,16 +2,20 @@
 
 use std::sync::Arc;
 
-use glam::Vec2;
-use physics_bridge::{Character, Crowd, GroundKind, HISTORY_SECS, Model};
-use policy_core::{Bindings, Buttons, CharacterPack, CommandMapper, Heading};
+use glam::{Vec2, Vec3};
+use physics_bridge::{BodyPoses, Character, Crowd, GroundKind, HISTORY_SECS, Model, ModelError, Pose};
+use policy_core::{Bindings, BlendMode, CharacterPack, CommandMapper, GamepadState, Heading};
 
-use super::{Actor, Overrides, SimError, Simulation, TickTimes, Totals};
+use super::rewind::PadRing;
+use super::{Overrides, Shove, SimError, Simulation, SteeredCharacter, TickTimes, Totals};
+use crate::assets;
 
 /// Most characters in one world.
 pub const MAX_CHARACTERS: usize = 200;
 /// Most characters that each keep the last ten seconds; 0.8 MB each.
 const MAX_HISTORIES: usize = 16;
+/// A character whose root is below this share of its standing height lies.
+const LYING: f32 = 0.3;
 /// Distance between neighbours at the start, metres.
 const SPACING: f32 = 1.3;
 
@@ -24,7 +28,7 @@ pub struct SimConfig {
     pub characters: usize,
     /// Places the hills and turns the crowd.
     pub seed: u32,
-    /// Keep the last ten seconds, to go back to.
+    /// Keep the last ten seconds, to rewind to.
     pub history: bool,
 }
 
@@ -64,26 +68,60 @@ impl SimConfig {
     }
 }
 
+/// The body of a pack: the one that it brings, or the humanoid for packs of version 1.
+///
+/// # Errors
+/// When the pack's MJCF is no character, or is not that of its skeleton.
+pub fn model_of(pack: &CharacterPack) -> Result<Model, ModelError> {
+    match pack.mjcf() {
+        Some(_) => Model::for_pack(pack),
+        None => Model::from_mjcf_with_skeleton(assets::HUMANOID_MJCF, Arc::clone(pack.skeleton())),
+    }
+}
+
+/// Where the bodies are with all joints at zero and the root upright at the origin, metres.
+#[must_use]
+pub fn rest_positions(model: &Model) -> Vec<Vec3> {
+    let mut character = Character::new(model);
+    let mut poses = BodyPoses::new(model.skeleton());
+    let Pose { qpos, qvel } = Pose::new(model.skeleton());
+    character.set_pose(&qpos, &qvel).expect("zeros and an upright root are a pose");
+    character.poses_into(&mut poses);
+    poses.positions
+}
+
+/// The parts of a world that depend on its characters.
+struct Populated {
+    crowd: Crowd,
+    steered: Vec<SteeredCharacter>,
+    pads: PadRing,
+    shove: Shove,
+}
+
 impl Simulation {
-    /// A world of the humanoid `mjcf`, its controllers made of `pack`.
+    /// A world of the characters of `pack`.
     ///
     /// # Errors
-    /// When the MJCF is not of the humanoid, or the number of characters is out of range.
-    pub fn new(mjcf: &str, pack: Arc<CharacterPack>, config: SimConfig) -> Result<Self, SimError> {
-        let model = Model::from_mjcf(mjcf)?.with_terrain(config.ground.terrain(config.seed))?;
-        let (crowd, actors) = populate(&model, &pack, config)?;
+    /// When the pack's body can't be simulated, or the number of characters is out of range.
+    pub fn new(pack: Arc<CharacterPack>, config: SimConfig) -> Result<Self, SimError> {
+        let model = model_of(&pack)?.with_terrain(config.ground.terrain(config.seed))?;
+        let Populated { crowd, steered, pads, shove } =
+            populate(&model, &pack, BlendMode::default(), config)?;
         let mapper = CommandMapper::new(&pack, &Bindings::default());
         Ok(Self {
             config,
             pack,
             model,
             crowd,
-            actors,
+            steered,
             ghost: None,
             playback: None,
             mapper,
-            shove_held: Buttons::NONE,
+            last_pad: GamepadState::default(),
+            pads,
+            shove,
             overrides: Overrides::default(),
+            renews_controllers: false,
             ticks: 0,
             times: TickTimes::default(),
             totals: Totals::default(),
@@ -96,31 +134,44 @@ impl Simulation {
     /// When the number of characters is out of range; nothing is changed then.
     pub fn rebuild(&mut self, config: SimConfig) -> Result<(), SimError> {
         let model = self.model.with_terrain(config.ground.terrain(config.seed))?;
-        let (crowd, actors) = populate(&model, &self.pack, config)?;
-        (self.model, self.crowd, self.actors, self.config) = (model, crowd, actors, config);
-        self.ghost = None;
-        self.mapper.reset();
+        let populated = populate(&model, &self.pack, self.blend_mode(), config)?;
+        self.config = config;
+        self.replace(model, populated);
         Ok(())
     }
 
-    /// Goes on with another pack; everybody begins anew.
-    pub fn set_pack(&mut self, pack: Arc<CharacterPack>) {
+    /// Begins anew with the characters of another pack, on the same ground and with the same settings.
+    ///
+    /// # Errors
+    /// When the pack's body can't be simulated; nothing is changed then.
+    pub fn set_pack(&mut self, pack: Arc<CharacterPack>) -> Result<(), SimError> {
+        let model = model_of(&pack)?
+            .with_settings(self.model.settings())?
+            .with_terrain(self.config.ground.terrain(self.config.seed))?;
+        let populated = populate(&model, &pack, self.blend_mode(), self.config)?;
         self.mapper = CommandMapper::new(&pack, &Bindings::default());
         self.overrides = Overrides::default();
-        self.ghost = None;
-        for (actor, character) in self.actors.iter_mut().zip(self.crowd.characters()) {
-            *actor = Actor::new(Arc::clone(&pack), character);
-        }
+        self.playback = None;
         self.pack = pack;
-        self.reset();
+        self.replace(model, populated);
+        Ok(())
+    }
+
+    fn replace(&mut self, model: Model, populated: Populated) {
+        self.model = model;
+        (self.crowd, self.steered) = (populated.crowd, populated.steered);
+        (self.pads, self.shove) = (populated.pads, populated.shove);
+        (self.ghost, self.last_pad) = (None, GamepadState::default());
+        self.mapper.reset();
     }
 }
 
 fn populate(
     model: &Model,
     pack: &Arc<CharacterPack>,
+    mode: BlendMode,
     config: SimConfig,
-) -> Result<(Crowd, Vec<Actor>), SimError> {
+) -> Result<Populated, SimError> {
     if !(1..=MAX_CHARACTERS).contains(&config.characters) {
         return Err(SimError::Characters { found: config.characters });
     }
@@ -134,8 +185,16 @@ fn populate(
         }
         characters.push(character);
     }
-    let actors = characters.iter().map(|c| Actor::new(Arc::clone(pack), c)).collect();
-    Ok((Crowd::new(characters, None)?, actors))
+    let steered: Vec<SteeredCharacter> =
+        characters.iter().map(|c| SteeredCharacter::new(Arc::clone(pack), mode, c)).collect();
+    let skeleton = model.skeleton();
+    let shove = Shove {
+        body: skeleton.head().and_then(|head| skeleton.parent(head)).unwrap_or(skeleton.root()),
+        least_height: LYING * steered[0].state.root_height(),
+    };
+    let mut pads = PadRing::new(model.control_hz(), &GamepadState::default());
+    *pads.next() = GamepadState::default();
+    Ok(Populated { crowd: Crowd::new(characters, None)?, steered, pads, shove })
 }
 
 #[cfg(test)]

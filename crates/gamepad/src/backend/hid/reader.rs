@@ -1,4 +1,4 @@
-//! The thread of one open device: start-up requests, then input and output reports until it is gone.
+//! The thread of one open device: start-up requests, then input and output reports until it disconnects.
 
 use std::collections::VecDeque;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -13,9 +13,9 @@ use crate::descriptor::MAX_DESCRIPTOR_BYTES;
 use crate::device::{DeviceEvent, DeviceInfo};
 use crate::pads::{Model, Request};
 
-/// How long a read waits, hence how late an output report may be.
+/// How long a read waits. An output report may be this late.
 const READ_MILLISECONDS: i32 = 8;
-/// Time between two start-up requests: some pads lose what comes faster.
+/// Time between two start-up requests: some pads lose requests that arrive faster.
 const REQUEST_INTERVAL: Duration = Duration::from_millis(40);
 /// Longest report read.
 const REPORT_BYTES: usize = 1024;
@@ -52,7 +52,7 @@ impl Reader {
         self.tell(DeviceEvent::Disconnected(key));
     }
 
-    /// Reads until the device is gone or the back end stops.
+    /// Reads until the device disconnects or the back end stops.
     fn read(&self, output: &Receiver<Box<[u8]>>) {
         let id = self.device.id;
         let mut requests: VecDeque<Request> =
@@ -65,9 +65,9 @@ impl Reader {
                 self.request(&request);
                 last_request = Some(Instant::now());
             }
-            // Only the newest output counts.
+            // Only the newest output is sent.
             if let Some(report) = output.try_iter().last() {
-                // A pad that is gone shows at the next read; one that takes no output is still a pad.
+                // The next read detects a disconnect. A pad without output remains usable.
                 let _ = self.opened.write(&report);
             }
             match self.opened.read_timeout(&mut buffer, READ_MILLISECONDS) {
@@ -94,7 +94,7 @@ impl Reader {
         }
     }
 
-    /// When nobody listens any more the back end is being dropped, and `stop` is set.
+    /// The channel is closed only while the back end is dropped; `stop` is set then.
     fn tell(&self, event: DeviceEvent) {
         let _ = self.events.send((Instant::now(), event));
     }

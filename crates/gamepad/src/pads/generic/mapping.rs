@@ -1,4 +1,4 @@
-//! Which field of a descriptor is which control of a pad.
+//! Maps fields of a descriptor to controls of a pad.
 
 use crate::Button;
 use crate::descriptor::{Descriptor, Field, Usage};
@@ -17,7 +17,7 @@ const HAT: Usage = Usage::new(DESKTOP, 0x39);
 const ACCELERATOR: Usage = Usage::new(SIMULATION, 0xc4);
 const BRAKE: Usage = Usage::new(SIMULATION, 0xc5);
 
-/// What a field does.
+/// Control of a field.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Control {
     LeftX,
@@ -43,7 +43,7 @@ pub(super) struct Mapping {
     pub(super) has_trigger_buttons: bool,
 }
 
-/// What the numbered buttons of a pad are: nothing in a descriptor says so.
+/// Meaning of a pad's numbered buttons, which a descriptor does not state.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum ButtonOrder {
@@ -164,7 +164,7 @@ pub(super) fn map(descriptor: &Descriptor, order: ButtonOrder) -> Mapping {
     for field in fields().filter(|field| !field.is_array) {
         let axis = axes.iter().find(|(usage, _)| *usage == field.usage).map(|found| found.1);
         let control = axis.or_else(|| button_control(field, order));
-        // A second field with the same meaning (another hat, a copy in another report) is left out.
+        // A second field with the same meaning (another hat, a copy in another report) is ignored.
         let known = |control| mapping.fields.iter().any(|(_, other)| *other == control);
         if let Some(control) = control.filter(|&control| !known(control)) {
             mapping.fields.push((*field, control));

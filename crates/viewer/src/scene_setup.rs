@@ -13,7 +13,7 @@ use crate::sim::Simulation;
 #[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct Shown {
-    /// Collision shapes instead of the mannequin.
+    /// Collision shapes instead of the mesh.
     pub collision_shapes: bool,
     /// Where the pad points.
     pub target: bool,
@@ -53,7 +53,7 @@ pub struct Trail {
 }
 
 impl Trail {
-    /// Takes in where the player is.
+    /// Adds where the player is.
     pub fn follow(&mut self, sim: &Simulation) {
         let at = sim.player().position();
         if !at.is_finite() {
@@ -109,15 +109,15 @@ pub fn set_scene(
     scene.markers.clear();
     scene.ribbons.clear();
     scene.hide_figures = shown.collision_shapes;
-    for index in 0..sim.actors().len() {
-        let figure = figure(sim, &sim.poses(index, alpha), tint(index));
+    for index in 0..sim.characters().len() {
+        let figure = figure(sim, sim.poses(index, alpha), tint(index));
         if shown.collision_shapes {
             collision_shapes(scene, sim, &figure, [0.85, 0.62, 0.25, 1.0]);
         }
         scene.figures.push(figure);
     }
     if let Some(poses) = sim.ghost_poses(alpha) {
-        let mut figure = figure(sim, &poses, GHOST_TINT);
+        let mut figure = figure(sim, poses, GHOST_TINT);
         let aside = sim.player().heading().world_from_heading_2d(Vec2::new(0.0, -GHOST_BESIDE)).extend(0.0);
         figure.positions.iter_mut().for_each(|p| *p += aside);
         if shown.collision_shapes {
@@ -146,9 +146,9 @@ pub fn set_scene(
     }
 }
 
-fn figure(sim: &Simulation, poses: &BodyPoses, tint: [f32; 4]) -> Figure {
-    let pelvis = poses.positions[0];
-    let height = |dx: f32, dy: f32| sim.model().height_at(pelvis.x + dx, pelvis.y + dy);
+fn figure(sim: &Simulation, poses: BodyPoses, tint: [f32; 4]) -> Figure {
+    let root = poses.positions[0];
+    let height = |dx: f32, dy: f32| sim.model().height_at(root.x + dx, root.y + dy);
     // Over half a metre: what a patch of shadow lies on, not the edge of a step.
     let slope = [height(0.25, 0.0) - height(-0.25, 0.0), height(0.0, 0.25) - height(0.0, -0.25)];
     Figure {

@@ -1,13 +1,14 @@
 //! Files of poses, as `trainer view --poses` writes them: generalised positions at a fixed rate. Reads and checks
-//! them; what becomes of the bodies is the physics' forward kinematics.
+//! them; the physics works out where the bodies are.
 
 use std::fmt;
-use std::io::Read as _;
 use std::path::{Path, PathBuf};
 
-use physics_bridge::{PoseError, QPOS_LEN};
-use serde::Deserialize;
-use serde::de::{self, DeserializeSeed, Deserializer, SeqAccess, Unexpected, Visitor};
+use physics_bridge::PoseError;
+use serde::de::{self, DeserializeSeed, Deserializer, MapAccess, SeqAccess, Unexpected, Visitor};
+
+use crate::files;
+use crate::text::cut;
 
 /// First field of every such file.
 pub const POSES_FORMAT: &str = "policy-space poses";
@@ -28,20 +29,14 @@ const LONGEST_MESSAGE: usize = 300;
 /// Why a file of poses can't be played.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
-pub enum PosesError {
-    /// The file can't be read.
+pub enum PoseClipError {
+    /// The file can't be read, or is too large.
     #[error("poses {}: {source}", path.display())]
     File {
         /// The file.
         path: PathBuf,
         /// Why.
-        source: std::io::Error,
-    },
-    /// The file is too large.
-    #[error("poses {}: expected at most {MOST_BYTES} bytes, found more", path.display())]
-    Size {
-        /// The file.
-        path: PathBuf,
+        source: files::ReadError,
     },
     /// The text is no file of poses.
     #[error("poses {}: {message}", path.display())]
@@ -64,41 +59,34 @@ pub enum PosesError {
 }
 
 /// A clip as poses.
-#[derive(Clone, Debug, PartialEq, Deserialize)]
-#[serde(deny_unknown_fields, expecting = "an object with the fields format, clip, hz and qpos")]
-pub struct Poses {
-    /// [`POSES_FORMAT`].
-    #[serde(deserialize_with = "format")]
-    pub format: String,
+#[derive(Clone, Debug, PartialEq)]
+pub struct PoseClip {
     /// Name of the clip.
-    #[serde(deserialize_with = "clip")]
     pub clip: String,
     /// Poses a second, above 0 and at most 1000.
-    #[serde(deserialize_with = "hz")]
     pub hz: f64,
-    /// One generalised position a pose, at least one; see [`QPOS_LEN`].
-    #[serde(deserialize_with = "rows")]
-    pub qpos: Vec<[f64; QPOS_LEN]>,
+    /// One generalised position a pose, at least one: position (3) and rotation (4, wxyz) of the root, then the
+    /// hinges, metres and radians.
+    pub qpos: Vec<Vec<f64>>,
 }
 
-impl Poses {
-    /// Reads a file.
+impl PoseClip {
+    /// Reads a file whose poses have `qpos_len` numbers each.
     ///
     /// # Errors
-    /// When it can't be read, is too large, or is no file of poses; the message names the field.
-    pub fn load(path: &Path) -> Result<Self, PosesError> {
-        let file = |source| PosesError::File { path: path.to_owned(), source };
-        let text = |message: String| PosesError::Text {
+    /// When it can't be read, is too large, or is no file of such poses; the message names the field.
+    pub fn load(path: &Path, qpos_len: usize) -> Result<Self, PoseClipError> {
+        let text = |message: String| PoseClipError::Text {
             path: path.to_owned(),
             message: cut(&message, LONGEST_MESSAGE),
         };
-        let mut bytes = Vec::new();
-        let opened = std::fs::File::open(path).map_err(file)?;
-        opened.take(MOST_BYTES + 1).read_to_end(&mut bytes).map_err(file)?;
-        if bytes.len() as u64 > MOST_BYTES {
-            return Err(PosesError::Size { path: path.to_owned() });
-        }
-        let poses: Self = serde_json::from_slice(&bytes).map_err(|e| text(e.to_string()))?;
+        let bytes = files::read(path, MOST_BYTES)
+            .map_err(|source| PoseClipError::File { path: path.to_owned(), source })?;
+        let mut json = serde_json::Deserializer::from_slice(&bytes);
+        let poses = File { qpos_len }
+            .deserialize(&mut json)
+            .and_then(|poses| json.end().map(|()| poses))
+            .map_err(|e| text(e.to_string()))?;
         let seconds = poses.qpos.len() as f64 / poses.hz;
         if seconds > MOST_SECS {
             return Err(text(format!(
@@ -111,26 +99,52 @@ impl Poses {
     }
 }
 
-/// At most so many characters of a text that may hold a part of the file.
-fn cut(text: &str, most: usize) -> String {
-    let head: String = text.chars().take(most).collect();
-    if head.len() < text.len() { head + " ..." } else { head }
+const FIELDS: [&str; 4] = ["format", "clip", "hz", "qpos"];
+
+/// The whole file.
+struct File {
+    qpos_len: usize,
 }
 
-fn format<'de, D: Deserializer<'de>>(deserializer: D) -> Result<String, D::Error> {
-    deserializer.deserialize_str(Text { field: "format" })
+impl<'de> DeserializeSeed<'de> for File {
+    type Value = PoseClip;
+
+    fn deserialize<D: Deserializer<'de>>(self, deserializer: D) -> Result<PoseClip, D::Error> {
+        deserializer.deserialize_map(self)
+    }
 }
 
-fn clip<'de, D: Deserializer<'de>>(deserializer: D) -> Result<String, D::Error> {
-    deserializer.deserialize_str(Text { field: "clip" })
-}
+impl<'de> Visitor<'de> for File {
+    type Value = PoseClip;
 
-fn hz<'de, D: Deserializer<'de>>(deserializer: D) -> Result<f64, D::Error> {
-    Number { field: "hz".into(), above: 0.0, most: MOST_HZ }.deserialize(deserializer)
-}
+    fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "an object with the fields format, clip, hz and qpos")
+    }
 
-fn rows<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Vec<[f64; QPOS_LEN]>, D::Error> {
-    deserializer.deserialize_seq(Rows)
+    fn visit_map<A: MapAccess<'de>>(self, mut map: A) -> Result<PoseClip, A::Error> {
+        let (mut format, mut clip, mut hz, mut qpos) = (None, None, None, None);
+        while let Some(field) = map.next_key::<String>()? {
+            let twice = match field.as_str() {
+                "format" => format.replace(map.next_value_seed(Text { field: "format" })?).is_some(),
+                "clip" => clip.replace(map.next_value_seed(Text { field: "clip" })?).is_some(),
+                "hz" => {
+                    let number = Number { field: "hz".into(), above: 0.0, most: MOST_HZ };
+                    hz.replace(map.next_value_seed(number)?).is_some()
+                }
+                "qpos" => qpos.replace(map.next_value_seed(Rows(self.qpos_len))?).is_some(),
+                other => return Err(de::Error::unknown_field(&cut(other, LONGEST_FOUND), &FIELDS)),
+            };
+            if twice {
+                return Err(de::Error::custom(format_args!("duplicate field `{field}`")));
+            }
+        }
+        format.ok_or_else(|| de::Error::missing_field("format"))?;
+        Ok(PoseClip {
+            clip: clip.ok_or_else(|| de::Error::missing_field("clip"))?,
+            hz: hz.ok_or_else(|| de::Error::missing_field("hz"))?,
+            qpos: qpos.ok_or_else(|| de::Error::missing_field("qpos"))?,
+        })
+    }
 }
 
 /// The error, with the field that it is about where the parser does not say it.
@@ -142,6 +156,14 @@ fn about<E: de::Error>(field: &str, error: E) -> E {
 /// The two fields of text.
 struct Text {
     field: &'static str,
+}
+
+impl<'de> DeserializeSeed<'de> for Text {
+    type Value = String;
+
+    fn deserialize<D: Deserializer<'de>>(self, deserializer: D) -> Result<String, D::Error> {
+        deserializer.deserialize_str(self)
+    }
 }
 
 impl Visitor<'_> for Text {
@@ -201,11 +223,20 @@ impl Visitor<'_> for Number {
     }
 }
 
-/// All poses. Each is checked as it is read, so that a bad file costs no more memory than a good one.
-struct Rows;
+/// All poses, each of so many numbers. Each is checked as it is read, so that a bad file costs no more memory than a
+/// good one.
+struct Rows(usize);
+
+impl<'de> DeserializeSeed<'de> for Rows {
+    type Value = Vec<Vec<f64>>;
+
+    fn deserialize<D: Deserializer<'de>>(self, deserializer: D) -> Result<Self::Value, D::Error> {
+        deserializer.deserialize_seq(self)
+    }
+}
 
 impl<'de> Visitor<'de> for Rows {
-    type Value = Vec<[f64; QPOS_LEN]>;
+    type Value = Vec<Vec<f64>>;
 
     fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(f, "qpos to be a list of 1 to {MOST_POSES} poses")
@@ -213,7 +244,9 @@ impl<'de> Visitor<'de> for Rows {
 
     fn visit_seq<A: SeqAccess<'de>>(self, mut seq: A) -> Result<Self::Value, A::Error> {
         let mut rows = Vec::new();
-        while let Some(row) = seq.next_element_seed(Row(rows.len())).map_err(|e| about("qpos", e))? {
+        while let Some(row) =
+            seq.next_element_seed(Row { index: rows.len(), length: self.0 }).map_err(|e| about("qpos", e))?
+        {
             rows.push(row);
             if rows.len() > MOST_POSES {
                 break;
@@ -227,11 +260,14 @@ impl<'de> Visitor<'de> for Rows {
     }
 }
 
-/// The pose of an index.
-struct Row(usize);
+/// The pose of an index, of so many numbers.
+struct Row {
+    index: usize,
+    length: usize,
+}
 
 impl<'de> DeserializeSeed<'de> for Row {
-    type Value = [f64; QPOS_LEN];
+    type Value = Vec<f64>;
 
     fn deserialize<D: Deserializer<'de>>(self, deserializer: D) -> Result<Self::Value, D::Error> {
         deserializer.deserialize_seq(self)
@@ -239,24 +275,24 @@ impl<'de> DeserializeSeed<'de> for Row {
 }
 
 impl<'de> Visitor<'de> for Row {
-    type Value = [f64; QPOS_LEN];
+    type Value = Vec<f64>;
 
     fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "qpos[{}] to be a list of {QPOS_LEN} numbers", self.0)
+        write!(f, "qpos[{}] to be a list of {} numbers", self.index, self.length)
     }
 
     fn visit_seq<A: SeqAccess<'de>>(self, mut seq: A) -> Result<Self::Value, A::Error> {
-        let mut row = [0.0; QPOS_LEN];
+        let mut row = Vec::with_capacity(self.length);
         let mut count = 0;
         loop {
-            let field = format!("qpos[{}][{count}]", self.0);
+            let field = format!("qpos[{}][{count}]", self.index);
             let number = Number { field: field.clone(), above: -FURTHEST, most: FURTHEST };
             let Some(number) = seq.next_element_seed(number).map_err(|e| about(&field, e))? else { break };
-            if let Some(place) = row.get_mut(count) {
-                *place = number;
+            if count < self.length {
+                row.push(number);
             }
             count += 1;
         }
-        if count == QPOS_LEN { Ok(row) } else { Err(de::Error::invalid_length(count, &self)) }
+        if count == self.length { Ok(row) } else { Err(de::Error::invalid_length(count, &self)) }
     }
 }

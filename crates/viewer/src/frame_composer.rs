@@ -1,17 +1,16 @@
-//! Puts a frame together: panels, picture, overlay, recording. The same for a window and off screen.
+//! Composes a frame: panels, picture, overlay, recording. The same for a window and off screen.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::time::{Instant, SystemTime};
 
 use image::RgbaImage;
 
 use crate::app::{App, Record};
 use crate::gpu::{Gpu, GpuError};
-use crate::mesh::SkinnedMesh;
 use crate::overlay::{Overlay, Prepared};
 use crate::recorder::{self, Kind, Recorder};
-use crate::render::{OffScreen, RenderConfig, Renderer, Scene};
-use crate::stage::ground_grid;
+use crate::render::{Appearance, OffScreen, RenderConfig, Renderer, Scene};
+use crate::scene_setup::ground_grid;
 
 /// Folder of recordings, in the present one.
 const FOLDER: &str = "policy-space-recordings";
@@ -19,7 +18,7 @@ const FOLDER: &str = "policy-space-recordings";
 const FILM_FPS: u32 = 30;
 
 /// Renderer, overlay and recorder around an [`App`].
-pub struct Desk {
+pub struct FrameComposer {
     gpu: Gpu,
     format: wgpu::TextureFormat,
     renderer: Renderer,
@@ -32,17 +31,17 @@ pub struct Desk {
     closing: Vec<Recorder>,
 }
 
-impl std::fmt::Debug for Desk {
+impl std::fmt::Debug for FrameComposer {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        f.debug_struct("Desk").field("format", &self.format).finish_non_exhaustive()
+        f.debug_struct("FrameComposer").field("format", &self.format).finish_non_exhaustive()
     }
 }
 
-impl Desk {
+impl FrameComposer {
     /// For views of `format`.
     #[must_use]
-    pub fn new(gpu: &Gpu, format: wgpu::TextureFormat, mesh: SkinnedMesh) -> Self {
-        Self::with_config(gpu, format, RenderConfig::for_adapter(gpu.is_software), mesh)
+    pub fn new(gpu: &Gpu, format: wgpu::TextureFormat, appearance: Appearance) -> Self {
+        Self::with_config(gpu, format, RenderConfig::for_adapter(gpu.is_software), appearance)
     }
 
     /// The same with a quality other than what the adapter can show in time.
@@ -51,14 +50,14 @@ impl Desk {
         gpu: &Gpu,
         format: wgpu::TextureFormat,
         config: RenderConfig,
-        mesh: SkinnedMesh,
+        appearance: Appearance,
     ) -> Self {
         let context = egui::Context::default();
         context.set_visuals(egui::Visuals::dark());
         Self {
             gpu: gpu.clone(),
             format,
-            renderer: Renderer::new(gpu, format, config, mesh),
+            renderer: Renderer::new(gpu, format, config, appearance),
             overlay: Overlay::new(gpu, format),
             context,
             scene: Scene::default(),
@@ -81,15 +80,25 @@ impl Desk {
         let output = self.context.run_ui(input, |ui| app.ui(ui, around));
         app.plots.ui.push(start.elapsed().as_secs_f32() * 1e3);
         if let Some(path) = app.dropped.take() {
-            match SkinnedMesh::load(&path) {
-                Ok(mesh) => self.renderer.set_mesh(mesh),
-                Err(error) => app.notice = Some(error.to_string()),
-            }
+            self.open_dropped(app, &path);
         }
         output
     }
 
-    /// Takes up what a frame that is not drawn has changed.
+    /// Opens a file that was dropped on the window, and says what came of it. What can't be opened changes nothing.
+    fn open_dropped(&mut self, app: &mut App, path: &Path) {
+        let name = path.display();
+        app.notice = Some(match app.open_dropped(path) {
+            Ok((what, appearance)) => {
+                app.has_mesh = appearance.mesh().is_some();
+                self.renderer.set_appearance(appearance);
+                format!("Opened the {what} {name}")
+            }
+            Err(error) => error.to_string(),
+        });
+    }
+
+    /// Uploads what a frame that is not drawn has changed.
     pub fn skip(&mut self, output: egui::FullOutput) {
         let mut prepared = Prepared::new(&self.context, output);
         self.overlay.upload(&mut prepared);
@@ -183,7 +192,7 @@ impl Desk {
         let picture = self.capture(size, Some(prepared));
         let Some((recorder, _, taken)) = &mut self.recorder else { return };
         *taken = due + 1;
-        if !picture.is_ok_and(|p| recorder.take(p)) {
+        if !picture.is_ok_and(|p| recorder.take(p, due as u32)) {
             self.stop(app);
         }
     }
@@ -193,13 +202,13 @@ impl Desk {
         let path = match kind {
             Kind::Sequence => name("frames"),
             Kind::Mp4 => name("mp4"),
-            Kind::Apng => name("png"),
+            Kind::Apng => name("apng"),
         };
         app.recording = Some(path.display().to_string());
         self.recorder = Some((Recorder::start(kind, path, size, FILM_FPS), Instant::now(), 0));
     }
 
-    /// Ends the recording; what is left is written while the demo goes on.
+    /// Ends the recording; what is left is written while the demo runs.
     fn stop(&mut self, app: &mut App) {
         app.recording = None;
         if let Some((mut recorder, ..)) = self.recorder.take() {
@@ -220,16 +229,16 @@ impl Desk {
         }
     }
 
-    /// The humanoid that is drawn.
+    /// How characters are drawn.
     #[must_use]
-    pub fn mesh(&self) -> &SkinnedMesh {
-        self.renderer.mesh()
+    pub fn appearance(&self) -> &Appearance {
+        self.renderer.appearance()
     }
 
     /// Ends recordings that still run, and waits until they are written.
     pub fn finish(self) {
         for recorder in self.recorder.map(|(recorder, ..)| recorder).into_iter().chain(self.closing) {
-            // The window is gone: there is nobody left to tell.
+            // The window is gone: there is no place left for a message.
             let _ = recorder.finish();
         }
     }

@@ -1,0 +1,25 @@
+//! Where the player is among its policies, in words.
+
+use policy_core::NodeId;
+
+use super::App;
+
+/// What is blended at present: the sliders of the layers while they steer, else the place on the graph.
+#[must_use]
+pub fn place(app: &App) -> String {
+    let graph = app.sim.pack().graph();
+    let name = |node: NodeId| graph.node(node).name.as_str();
+    if let (true, Some(_)) = (app.layers.active, app.sim.overrides.blend) {
+        let layers = &app.layers;
+        let percent = |t: f32| format!("{:.0}", 100.0 * t);
+        let shares = if layers.automatic { percent(layers.t[0]) } else { layers.t.map(percent).join(", ") };
+        return format!("layers: {} - {} {shares} %", name(layers.from), name(layers.to));
+    }
+    let position = app.sim.player().report().position;
+    match position.as_node() {
+        Some(node) => name(node).to_owned(),
+        None => {
+            format!("{} - {} {:.0} %", name(position.from), name(position.to), 100.0 * position.t)
+        }
+    }
+}

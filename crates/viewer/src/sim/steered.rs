@@ -1,0 +1,216 @@
+//! One character as the demo keeps it: controller, command, the last two poses, its history and its sums.
+
+use std::sync::Arc;
+
+use glam::Vec2;
+use physics_bridge::{BodyPoses, Character, Pose};
+use policy_core::{
+    Arithmetic, BlendMode, CharacterPack, CharacterState, Command, Controller, ControllerConfig,
+    ControllerState, Heading, StateError, TickReport,
+};
+
+use super::rewind::{Moment, Ring, keeps_history};
+use super::{SHOVED_BELOW_MPS, Totals};
+
+/// A character's controller, and what is known of its motion.
+#[derive(Clone, Debug)]
+pub struct SteeredCharacter {
+    /// Steers it.
+    pub controller: Controller,
+    /// What it sensed after the last tick.
+    pub state: CharacterState,
+    /// What it was asked in the last tick.
+    pub command: Command,
+    /// Seconds it has been down with no skill to get up.
+    pub(super) down_secs: f32,
+    /// Seconds that the last shove still acts.
+    pub(super) shoved_secs: f32,
+    was_down: bool,
+    poses: [BodyPoses; 2],
+    pose: Pose,
+    /// One moment for each tick that the physics keeps; `None` where it keeps none.
+    history: Option<Box<Ring<Moment>>>,
+}
+
+impl SteeredCharacter {
+    pub(super) fn new(pack: Arc<CharacterPack>, mode: BlendMode, character: &Character) -> Self {
+        let model = character.model();
+        let skeleton = model.skeleton();
+        let history =
+            keeps_history(character).then(|| Box::new(Ring::new(model.control_hz(), &Moment::new(&pack))));
+        let mut steered = Self {
+            state: CharacterState::new(skeleton),
+            poses: [BodyPoses::new(skeleton), BodyPoses::new(skeleton)],
+            pose: Pose::new(skeleton),
+            command: Command::default(),
+            down_secs: 0.0,
+            shoved_secs: 0.0,
+            was_down: false,
+            history,
+            controller: Controller::with_config(pack, config(mode)),
+        };
+        steered.restart(character);
+        steered
+    }
+
+    /// What the controller did in the last tick.
+    #[must_use]
+    pub fn report(&self) -> &TickReport {
+        self.controller.report()
+    }
+
+    /// Where the root body is, seen from above.
+    #[must_use]
+    pub fn position(&self) -> Vec2 {
+        self.state.root().position.truncate()
+    }
+
+    /// Where it looks.
+    #[must_use]
+    pub fn heading(&self) -> Heading {
+        Heading::from_rotation(self.state.root().rotation)
+    }
+
+    /// Horizontal speed of the root body, metres per second.
+    #[must_use]
+    pub fn speed(&self) -> f32 {
+        self.state.root().linear_velocity.truncate().length()
+    }
+
+    /// True while it lies or gets up.
+    #[must_use]
+    pub fn is_down(&self) -> bool {
+        let report = self.report();
+        let recovery = self.controller.pack().recovery();
+        report.fallen || (recovery.is_some() && report.skill.map(|s| s.skill) == recovery)
+    }
+
+    /// False while a shove acts, and for a character that is down or fast.
+    pub(super) fn can_be_shoved(&self, least_height: f32) -> bool {
+        let root = self.state.root();
+        let fast = root.linear_velocity.length() > SHOVED_BELOW_MPS;
+        let low = self.state.root_height() < least_height;
+        self.shoved_secs <= 0.0 && !fast && !low && !self.is_down()
+    }
+
+    /// Poses `alpha` of the way from the last tick but one to the last.
+    #[must_use]
+    pub fn poses(&self, alpha: f32) -> BodyPoses {
+        interpolated(&self.poses[0], &self.poses[1], alpha)
+    }
+
+    /// Takes the player's command. The target moves along, so that a crowd keeps its order.
+    pub(super) fn receive(&mut self, command: &Command, player: Vec2) {
+        self.command = *command;
+        self.command.target = command.target.map(|t| t - player + self.position());
+    }
+
+    /// Updates poses, history and sums after a tick of `dt_secs`.
+    pub(super) fn observe(&mut self, character: &Character, dt_secs: f32, totals: &mut Totals) {
+        let before = self.position();
+        self.take_pose(character);
+        let down = self.is_down();
+        totals.tick(before.distance(self.position()), down, down && !self.was_down);
+        self.was_down = down;
+        let helpless = down && self.controller.pack().recovery().is_none();
+        self.down_secs = if helpless { self.down_secs + dt_secs } else { 0.0 };
+        self.shoved_secs = (self.shoved_secs - dt_secs).max(0.0);
+        self.remember();
+        character.pose_into(&mut self.pose);
+        totals.hash.absorb(&self.pose);
+    }
+
+    /// Updates poses after a tick whose physics diverged: the character is in its state before it, and so is the controller where
+    /// a history is kept.
+    pub(super) fn observe_divergence(&mut self, character: &Character) {
+        self.load_moment(0);
+        self.take_pose(character);
+        self.stand_still();
+    }
+
+    /// Begins anew where the character was put.
+    pub(super) fn restart(&mut self, character: &Character) {
+        self.controller.reset();
+        (self.down_secs, self.shoved_secs, self.was_down) = (0.0, 0.0, false);
+        if let Some(history) = &mut self.history {
+            history.clear();
+        }
+        self.remember();
+        self.take_pose(character);
+        self.stand_still();
+    }
+
+    /// Goes back with the character, `age` ticks before the newest.
+    pub(super) fn rewind_to(&mut self, age: usize, character: &Character) {
+        self.load_moment(age);
+        self.take_pose(character);
+        self.stand_still();
+    }
+
+    /// Puts a new controller in the place of this one, its state carried over as bytes.
+    ///
+    /// # Errors
+    /// When the bytes are refused; nothing is changed then.
+    pub(super) fn renew_controller(&mut self) -> Result<(), StateError> {
+        let pack = self.controller.pack();
+        let mut state = ControllerState::new(pack);
+        self.controller.save_into(&mut state);
+        let mut bytes = vec![0; state.byte_len()];
+        state.write_bytes(&mut bytes);
+        let mut read = ControllerState::new(pack);
+        read.read_bytes(pack, &bytes)?;
+        let mut renewed = Controller::with_config(Arc::clone(pack), *self.controller.config());
+        renewed.restore(&read)?;
+        self.controller = renewed;
+        Ok(())
+    }
+
+    /// Keeps the present moment beside that of the physics.
+    fn remember(&mut self) {
+        if let Some(history) = &mut self.history {
+            let moment = history.next();
+            self.controller.save_into(&mut moment.controller);
+            (moment.down_secs, moment.shoved_secs) = (self.down_secs, self.shoved_secs);
+            moment.was_down = self.was_down;
+        }
+    }
+
+    fn load_moment(&mut self, age: usize) {
+        let Some(moment) = self.history.as_mut().and_then(|history| history.rewind_to(age)) else { return };
+        let restored = self.controller.restore(&moment.controller);
+        // It was saved by a controller of the same pack.
+        debug_assert!(restored.is_ok(), "{restored:?}");
+        (self.down_secs, self.shoved_secs) = (moment.down_secs, moment.shoved_secs);
+        self.was_down = moment.was_down;
+    }
+
+    /// Forgets the pose of the tick before.
+    fn stand_still(&mut self) {
+        let [before, now] = &mut self.poses;
+        before.copy_from(now);
+    }
+
+    fn take_pose(&mut self, character: &Character) {
+        character.sense_into(&mut self.state);
+        self.poses.swap(0, 1);
+        character.poses_into(&mut self.poses[1]);
+    }
+}
+
+/// Controllers of the demo repeat bit for bit on every machine.
+fn config(mode: BlendMode) -> ControllerConfig {
+    ControllerConfig { arithmetic: Arithmetic::Reproducible, blend_mode: mode, ..ControllerConfig::default() }
+}
+
+/// Poses `alpha` of the way from `a` to `b`, which have as many bodies.
+#[must_use]
+pub fn interpolated(a: &BodyPoses, b: &BodyPoses, alpha: f32) -> BodyPoses {
+    let mut poses = b.clone();
+    for (position, from) in poses.positions.iter_mut().zip(&a.positions) {
+        *position = from.lerp(*position, alpha);
+    }
+    for (rotation, from) in poses.rotations.iter_mut().zip(&a.rotations) {
+        *rotation = from.slerp(*rotation, alpha);
+    }
+    poses
+}
