@@ -26,7 +26,7 @@ struct Arguments {
     /// Folder of runs.
     #[arg(long, global = true, default_value = "runs")]
     runs: PathBuf,
-    /// Folder of kept checkpoints, what runs go on from when there are none of their own.
+    /// Folder of kept checkpoints, which runs start from when they have none of their own.
     #[arg(long, global = true, default_value = "assets/checkpoints")]
     kept: PathBuf,
     /// The character.
@@ -44,7 +44,7 @@ enum Verb {
     Normaliser(cli::normaliser::Arguments),
     /// Binds trained skills into a character pack.
     Pack(cli::pack::Arguments),
-    /// Keeps slim checkpoints of runs, and the normaliser, for others to go on from.
+    /// Keeps slim checkpoints of runs, and the normaliser, to start other runs from.
     Keep(cli::keep::Arguments),
     /// Averages the policies of several checkpoints of one run.
     Average(cli::average::Arguments),

@@ -1,4 +1,4 @@
-//! `trainer keep`: slim checkpoints of runs and the normaliser, for others to go on from.
+//! `trainer keep`: slim checkpoints of runs and the normaliser, to start other runs from.
 
 use std::path::Path;
 

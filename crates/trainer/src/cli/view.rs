@@ -95,7 +95,7 @@ impl Scratch {
 
 impl Drop for Scratch {
     fn drop(&mut self) {
-        // What can't be removed is left to whoever clears the system's temporary files.
+        // What can't be removed is left in the system's temporary folder.
         let _ = std::fs::remove_dir_all(&self.0);
     }
 }

@@ -3,7 +3,7 @@
 /// How a tick ended.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Done {
-    /// The episode goes on.
+    /// The episode continues.
     #[default]
     No,
     /// It failed: nothing comes after.

@@ -1,4 +1,4 @@
-//! Why a run can't go on.
+//! Why a run can't continue.
 
 use std::path::PathBuf;
 
