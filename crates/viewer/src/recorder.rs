@@ -1,20 +1,20 @@
 //! Writes pictures and films on a thread of its own, so that the demo does not wait for the disk.
 
-use std::io::Write as _;
+mod writers;
+
 use std::path::{Path, PathBuf};
-use std::process::{Child, Command, Stdio};
-use std::sync::mpsc::{Receiver, SyncSender, TrySendError, sync_channel};
+use std::process::{Command, Stdio};
+use std::sync::mpsc::{SyncSender, TrySendError, sync_channel};
 use std::thread::JoinHandle;
 
 use image::imageops::FilterType;
 use image::{ImageFormat, RgbaImage};
 
 use crate::files;
+use writers::{apng, mp4, sequence};
 
 /// Frames that may wait for the disk; more are dropped.
 const WAITING: usize = 8;
-/// Longest time that one picture is shown, in pictures of the film: half a minute.
-const LONGEST_SHOWN: u32 = 900;
 
 /// Why nothing can be recorded.
 #[derive(Debug, thiserror::Error)]
@@ -164,102 +164,4 @@ pub fn save(picture: &RgbaImage, path: &Path) -> Result<(), RecorderError> {
 
 fn folder_at(path: &Path) -> Result<(), RecorderError> {
     std::fs::create_dir_all(path).map_err(|source| RecorderError::File { path: path.to_owned(), source })
-}
-
-/// Writes numbered pictures; returns when each of them is shown.
-fn sequence(folder: &Path, frames: &Receiver<Frame>) -> Result<Vec<u32>, RecorderError> {
-    let mut shown_at = Vec::new();
-    for (picture, at) in frames {
-        save(&picture, &part(folder, shown_at.len()))?;
-        shown_at.push(at);
-    }
-    Ok(shown_at)
-}
-
-fn part(folder: &Path, number: usize) -> PathBuf {
-    folder.join(format!("frame_{number:05}.png"))
-}
-
-fn mp4(
-    path: &Path,
-    [width, height]: [u32; 2],
-    fps: u32,
-    frames: &Receiver<Frame>,
-) -> Result<(), RecorderError> {
-    let file = |source| RecorderError::File { path: path.to_owned(), source };
-    folder_at(path.parent().unwrap_or(Path::new(".")))?;
-    let mut ffmpeg: Child = Command::new("ffmpeg")
-        .args(["-y", "-loglevel", "error", "-f", "rawvideo", "-pix_fmt", "rgba"])
-        .args(["-s", &format!("{width}x{height}"), "-r", &fps.to_string(), "-i", "-"])
-        // H.264 wants even sizes.
-        .args(["-vf", "crop=trunc(iw/2)*2:trunc(ih/2)*2", "-pix_fmt", "yuv420p"])
-        .arg(path)
-        .stdin(Stdio::piped())
-        .stdout(Stdio::null())
-        .stderr(Stdio::null())
-        .spawn()
-        .map_err(file)?;
-    if let Some(mut pipe) = ffmpeg.stdin.take() {
-        let mut shown: Option<Frame> = None;
-        for next in frames {
-            if let Some((picture, since)) = shown.take() {
-                for _ in 0..next.1.saturating_sub(since).clamp(1, LONGEST_SHOWN) {
-                    pipe.write_all(picture.as_raw()).map_err(file)?;
-                }
-            }
-            shown = Some(next);
-        }
-        if let Some((picture, _)) = shown {
-            pipe.write_all(picture.as_raw()).map_err(file)?;
-        }
-    }
-    match ffmpeg.wait() {
-        Ok(status) if status.success() => Ok(()),
-        _ => Err(RecorderError::Ffmpeg { path: path.to_owned() }),
-    }
-}
-
-/// An animation must say beforehand how many pictures it has, so they are kept, compressed, until the end.
-fn apng(path: &Path, size: [u32; 2], fps: u32, frames: &Receiver<Frame>) -> Result<(), RecorderError> {
-    let scratch = path.with_extension("parts");
-    let written = sequence(&scratch, frames).and_then(|shown_at| match shown_at.len() {
-        0 => Ok(()),
-        _ => animation(path, size, fps, &scratch, &shown_at),
-    });
-    let removed = match scratch.exists() {
-        true => std::fs::remove_dir_all(&scratch),
-        false => Ok(()),
-    };
-    written.and(removed.map_err(|source| RecorderError::File { path: scratch, source }))
-}
-
-fn animation(
-    path: &Path,
-    [width, height]: [u32; 2],
-    fps: u32,
-    parts: &Path,
-    shown_at: &[u32],
-) -> Result<(), RecorderError> {
-    let encoding = |source| RecorderError::Animation { path: path.to_owned(), source };
-    let file = |source| RecorderError::File { path: path.to_owned(), source };
-    // Under the folder of the parts until it is whole: what fails goes with them.
-    let whole = parts.join("whole");
-    let out = std::fs::File::create(&whole).map_err(file)?;
-    let mut encoder = png::Encoder::new(std::io::BufWriter::new(out), width, height);
-    encoder.set_color(png::ColorType::Rgba);
-    encoder.set_depth(png::BitDepth::Eight);
-    encoder.set_animated(shown_at.len() as u32, 0).map_err(encoding)?;
-    encoder.set_frame_delay(1, fps.min(1000) as u16).map_err(encoding)?;
-    let mut writer = encoder.write_header().map_err(encoding)?;
-    for (number, at) in shown_at.iter().enumerate() {
-        let part = part(parts, number);
-        let picture =
-            image::open(&part).map_err(|source| RecorderError::Picture { path: part.clone(), source })?;
-        let until = shown_at.get(number + 1).copied().unwrap_or(at + 1);
-        let shown = until.saturating_sub(*at).clamp(1, LONGEST_SHOWN);
-        writer.set_frame_delay(shown as u16, fps.min(1000) as u16).map_err(encoding)?;
-        writer.write_image_data(&picture.to_rgba8()).map_err(encoding)?;
-    }
-    writer.finish().map_err(encoding)?;
-    std::fs::rename(&whole, path).map_err(file)
 }

@@ -13,11 +13,12 @@ mod panel_kind;
 mod pick;
 mod place;
 mod plots;
+mod requests;
 
 use std::sync::mpsc::Receiver;
 
 use egui::Ui;
-use policy_core::{Button, GamepadState};
+use policy_core::GamepadState;
 
 use crate::analysis::Analysis;
 use crate::camera::Camera;
@@ -34,11 +35,6 @@ pub use panel_kind::{PanelKind, Side};
 pub use pick::Grab;
 pub use place::place;
 pub use plots::{Plots, Series};
-
-/// How far a trigger has to be pulled to take over from a panel.
-const TRIGGER_MOVES: f32 = 0.1;
-/// The button that acts as the third trigger.
-const STYLE_BUTTON: Button = Button::RightShoulder;
 
 /// What is known of pads, filled in by the reader of the pads.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -107,6 +103,8 @@ pub struct App {
     pub has_mesh: bool,
     /// A text field or drop-down was open in the last frame: the Escape key closes that.
     escape_taken: bool,
+    /// What was refused a moment ago, and for how many seconds it is still said.
+    refused: Option<(String, f32)>,
     /// The triggers when a panel took over from them.
     overridden_at: GamepadState,
     /// The ground has changed: the frame composer uploads it and clears this.
@@ -147,6 +145,7 @@ impl App {
             quit: false,
             has_mesh: true,
             escape_taken: false,
+            refused: None,
             overridden_at: GamepadState::default(),
             ground_changed: true,
             dropped: None,
@@ -168,6 +167,8 @@ impl App {
     /// Lets `dt` seconds of the clock on the wall pass: physics in whole ticks, camera, gauges.
     pub fn advance(&mut self, dt: f32) {
         self.keys.advance(dt);
+        self.refused =
+            self.refused.take().map(|(what, secs)| (what, secs - dt)).filter(|(_, secs)| *secs > 0.0);
         if let Some(analysis) = self.analysis_soon.as_ref().and_then(|soon| soon.try_recv().ok()) {
             (self.analysis, self.analysis_soon) = (Some(analysis), None);
         }
@@ -198,6 +199,7 @@ impl App {
         self.give_back_to_triggers(&input);
         self.sim.overrides.blend = self.layers.blend();
         let divergences = self.sim.tick(&input, self.camera.heading());
+        self.note_refusal();
         if self.sim.playback().is_some_and(Playback::has_restarted) {
             self.trail.clear();
         }
@@ -236,19 +238,6 @@ impl App {
             self.apply(command);
         }
         keys::release(ui.ctx(), self);
-    }
-
-    /// A trigger that is pulled takes over again from what a panel asked for.
-    fn give_back_to_triggers(&mut self, input: &GamepadState) {
-        let then = &mut self.overridden_at;
-        then.left_trigger = then.left_trigger.min(input.left_trigger);
-        then.right_trigger = then.right_trigger.min(input.right_trigger);
-        let pulled = input.left_trigger > then.left_trigger + TRIGGER_MOVES
-            || input.right_trigger > then.right_trigger + TRIGGER_MOVES;
-        if pulled || input.buttons.pressed_since(then.buttons).contains(STYLE_BUTTON) {
-            self.sim.overrides.goal = None;
-        }
-        then.buttons = input.buttons;
     }
 
     fn fail(&mut self, divergence: &Divergence) {

@@ -6,6 +6,7 @@ pub mod load;
 pub mod open;
 mod pad_input;
 mod report;
+mod values;
 
 use std::io::Write as _;
 use std::path::PathBuf;
@@ -13,9 +14,10 @@ use std::path::PathBuf;
 use clap::{Args, Parser, Subcommand};
 use policy_core::BlendMode;
 
-use crate::app::{App, PanelKind};
-use crate::sim::{GroundKind, MAX_CHARACTERS};
+use crate::app::App;
+use crate::sim::GroundKind;
 use crate::text;
+pub use values::PanelList;
 
 /// Steer a physics-based character by blending the parameters of tiny policies.
 #[derive(Debug, Parser)]
@@ -89,7 +91,7 @@ pub struct Demo {
     )]
     pub poses: Option<PathBuf>,
     /// How long to simulate, up to 3600; by default as long as the script, recording or clip, or 10.
-    #[arg(long, value_name = "SECONDS", requires = "headless", value_parser = seconds)]
+    #[arg(long, value_name = "SECONDS", requires = "headless", value_parser = values::seconds)]
     pub seconds: Option<f64>,
     /// Write what happened as JSON to this file.
     #[arg(long, value_name = "FILE", requires = "headless")]
@@ -101,10 +103,10 @@ pub struct Demo {
     #[arg(long, default_value_t = 30, value_name = "N", requires = "headless", value_parser = clap::value_parser!(u32).range(1..=240))]
     pub fps: u32,
     /// Size of the pictures or of the window, such as 1280x720.
-    #[arg(long, default_value = "1280x720", value_name = "WxH", value_parser = size)]
+    #[arg(long, default_value = "1280x720", value_name = "WxH", value_parser = values::size)]
     pub size: [u32; 2],
     /// Draw the panels into the pictures, or those of a list such as --panels=paths,analysis.
-    #[arg(long, requires = "frames", value_name = "LIST", num_args = 0..=1, require_equals = true, default_missing_value = "", value_parser = panels)]
+    #[arg(long, requires = "frames", value_name = "LIST", num_args = 0..=1, require_equals = true, default_missing_value = "", value_parser = values::panels)]
     pub panels: Option<PanelList>,
     /// Degrees by which pictures are taken from another side than the pad steers from.
     #[arg(
@@ -116,7 +118,7 @@ pub struct Demo {
     )]
     pub view_angle: f32,
     /// Distance of the camera, metres.
-    #[arg(long, value_name = "METRES", value_parser = distance)]
+    #[arg(long, value_name = "METRES", value_parser = values::distance)]
     pub distance: Option<f32>,
     /// Character pack to open instead of the humanoid inside: any skeleton. Packs of version 2 bring their body; those
     /// of version 1 are humanoids.
@@ -130,16 +132,16 @@ pub struct Demo {
     #[arg(long, requires = "headless")]
     pub renew_controllers: bool,
     /// How blends become actions: parameters, actions or switch.
-    #[arg(long, default_value = "parameters", value_parser = mode)]
+    #[arg(long, default_value = "parameters", value_parser = values::mode)]
     pub mode: BlendMode,
     /// Walk beside a second character under another blend mode.
-    #[arg(long, value_name = "MODE", value_parser = mode)]
+    #[arg(long, value_name = "MODE", value_parser = values::mode)]
     pub ghost: Option<BlendMode>,
     /// The ground: flat, wavy or steps.
-    #[arg(long, default_value = "flat", value_parser = ground)]
+    #[arg(long, default_value = "flat", value_parser = values::ground)]
     pub terrain: GroundKind,
     /// Number of characters, 1 to 200.
-    #[arg(long, default_value_t = 1, value_name = "N", value_parser = characters)]
+    #[arg(long, default_value_t = 1, value_name = "N", value_parser = values::characters)]
     pub characters: usize,
     /// Places the hills and turns the crowd.
     #[arg(long, default_value_t = 1)]
@@ -159,8 +161,6 @@ pub struct Demo {
 const MOST_SECS: f64 = 3600.0;
 /// Longest line of a trace, characters.
 const LONGEST_LINE: usize = 200;
-/// Most pixels of a picture: one takes about 45 bytes of memory.
-const MOST_PIXELS: u32 = 3840 * 2160;
 
 /// Writes one line of what the player does to standard error.
 pub fn trace(app: &App) {
@@ -182,65 +182,6 @@ pub fn trace(app: &App) {
     );
     // Where standard error is closed there is no other place for it.
     let _ = writeln!(std::io::stderr(), "{}", text::printable(&line, LONGEST_LINE));
-}
-
-fn size(text: &str) -> Result<[u32; 2], String> {
-    let parts = text.split_once('x').and_then(|(w, h)| Some([w.parse().ok()?, h.parse().ok()?]));
-    match parts {
-        Some([w, h]) if (16..=8192).contains(&w) && (16..=8192).contains(&h) && w * h <= MOST_PIXELS => {
-            Ok([w, h])
-        }
-        _ => Err(format!(
-            "expected WIDTHxHEIGHT, such as 1280x720, each 16 to 8192 and at most {MOST_PIXELS} pixels (3840x2160)"
-        )),
-    }
-}
-
-fn seconds(text: &str) -> Result<f64, String> {
-    match text.parse() {
-        Ok(seconds) if seconds > 0.0 && seconds <= MOST_SECS => Ok(seconds),
-        _ => Err(format!("expected a number above 0 and up to {MOST_SECS}")),
-    }
-}
-
-/// Panels to open; none named means those that open by themselves.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct PanelList(pub Vec<PanelKind>);
-
-fn panels(text: &str) -> Result<PanelList, String> {
-    let expected = || {
-        let titles = PanelKind::ALL.map(|kind| kind.title().to_lowercase()).join(",");
-        format!("expected some of {titles}")
-    };
-    let named = text.split(',').filter(|title| !title.is_empty());
-    named
-        .map(|title| PanelKind::from_title(title).ok_or_else(expected))
-        .collect::<Result<_, _>>()
-        .map(PanelList)
-}
-
-fn distance(text: &str) -> Result<f32, String> {
-    match text.parse() {
-        Ok(metres) if (1.0..=60.0).contains(&metres) => Ok(metres),
-        _ => Err("expected a number from 1 to 60".into()),
-    }
-}
-
-fn characters(text: &str) -> Result<usize, String> {
-    match text.parse() {
-        Ok(count) if (1..=MAX_CHARACTERS).contains(&count) => Ok(count),
-        _ => Err(format!("expected a whole number from 1 to {MAX_CHARACTERS}")),
-    }
-}
-
-fn mode(text: &str) -> Result<BlendMode, String> {
-    let names = BlendMode::ALL.map(BlendMode::name).join(", ");
-    BlendMode::from_name(text).ok_or_else(|| format!("expected one of {names}"))
-}
-
-fn ground(text: &str) -> Result<GroundKind, String> {
-    let names = GroundKind::ALL.map(GroundKind::name).join(", ");
-    GroundKind::from_name(text).ok_or_else(|| format!("expected one of {names}"))
 }
 
 #[cfg(test)]

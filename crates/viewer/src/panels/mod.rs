@@ -151,7 +151,10 @@ fn status(ui: &mut Ui, app: &App, free: Rect, commands: &mut Vec<ViewerCommand>)
         Some(clip) => {
             format!("{}   {:.2} of {:.2} s{state}", clip.clip(), clip.secs(app.alpha()), clip.duration())
         }
-        None => format!("{}   {:.2} m/s{state}", skill.unwrap_or(&app::place(app)), player.speed()),
+        None => {
+            let refused = app.refused().map(|what| format!("   {what}")).unwrap_or_default();
+            format!("{}   {:.2} m/s{state}{refused}", skill.unwrap_or(&app::place(app)), player.speed())
+        }
     };
     let at = free.left_bottom() + egui::vec2(14.0, -12.0);
     let painter = ui.painter();

@@ -6,14 +6,14 @@ use policy_core::{CharacterPack, ControllerState, GamepadState};
 
 /// All of a steered character that the next tick depends on, besides its physics.
 #[derive(Clone, Debug)]
-pub(super) struct Moment {
+pub(super) struct SavedTick {
     pub(super) controller: ControllerState,
     pub(super) down_secs: f32,
     pub(super) shoved_secs: f32,
     pub(super) was_down: bool,
 }
 
-impl Moment {
+impl SavedTick {
     pub(super) fn new(pack: &CharacterPack) -> Self {
         let controller = ControllerState::new(pack);
         Self { controller, down_secs: 0.0, shoved_secs: 0.0, was_down: false }

@@ -9,7 +9,7 @@ use policy_core::{
     ControllerState, Heading, StateError, TickReport,
 };
 
-use super::rewind::{Moment, Ring, keeps_history};
+use super::rewind::{Ring, SavedTick, keeps_history};
 use super::{SHOVED_BELOW_MPS, Totals};
 
 /// A character's controller, and what is known of its motion.
@@ -28,8 +28,8 @@ pub struct SteeredCharacter {
     was_down: bool,
     poses: [BodyPoses; 2],
     pose: Pose,
-    /// One moment for each tick that the physics keeps; `None` where it keeps none.
-    history: Option<Box<Ring<Moment>>>,
+    /// One entry for each tick that the physics keeps; `None` where it keeps none.
+    history: Option<Box<Ring<SavedTick>>>,
 }
 
 impl SteeredCharacter {
@@ -37,7 +37,7 @@ impl SteeredCharacter {
         let model = character.model();
         let skeleton = model.skeleton();
         let history =
-            keeps_history(character).then(|| Box::new(Ring::new(model.control_hz(), &Moment::new(&pack))));
+            keeps_history(character).then(|| Box::new(Ring::new(model.control_hz(), &SavedTick::new(&pack))));
         let mut steered = Self {
             state: CharacterState::new(skeleton),
             poses: [BodyPoses::new(skeleton), BodyPoses::new(skeleton)],
@@ -123,7 +123,7 @@ impl SteeredCharacter {
     /// Updates poses after a tick whose physics diverged: the character is in its state before it, and so is the controller where
     /// a history is kept.
     pub(super) fn observe_divergence(&mut self, character: &Character) {
-        self.load_moment(0);
+        self.load_saved(0);
         self.take_pose(character);
         self.stand_still();
     }
@@ -142,7 +142,7 @@ impl SteeredCharacter {
 
     /// Goes back with the character, `age` ticks before the newest.
     pub(super) fn rewind_to(&mut self, age: usize, character: &Character) {
-        self.load_moment(age);
+        self.load_saved(age);
         self.take_pose(character);
         self.stand_still();
     }
@@ -165,23 +165,23 @@ impl SteeredCharacter {
         Ok(())
     }
 
-    /// Keeps the present moment beside that of the physics.
+    /// Keeps the present tick beside that of the physics.
     fn remember(&mut self) {
         if let Some(history) = &mut self.history {
-            let moment = history.next();
-            self.controller.save_into(&mut moment.controller);
-            (moment.down_secs, moment.shoved_secs) = (self.down_secs, self.shoved_secs);
-            moment.was_down = self.was_down;
+            let saved = history.next();
+            self.controller.save_into(&mut saved.controller);
+            (saved.down_secs, saved.shoved_secs) = (self.down_secs, self.shoved_secs);
+            saved.was_down = self.was_down;
         }
     }
 
-    fn load_moment(&mut self, age: usize) {
-        let Some(moment) = self.history.as_mut().and_then(|history| history.rewind_to(age)) else { return };
-        let restored = self.controller.restore(&moment.controller);
+    fn load_saved(&mut self, age: usize) {
+        let Some(saved) = self.history.as_mut().and_then(|history| history.rewind_to(age)) else { return };
+        let restored = self.controller.restore(&saved.controller);
         // It was saved by a controller of the same pack.
         debug_assert!(restored.is_ok(), "{restored:?}");
-        (self.down_secs, self.shoved_secs) = (moment.down_secs, moment.shoved_secs);
-        self.was_down = moment.was_down;
+        (self.down_secs, self.shoved_secs) = (saved.down_secs, saved.shoved_secs);
+        self.was_down = saved.was_down;
     }
 
     /// Forgets the pose of the tick before.

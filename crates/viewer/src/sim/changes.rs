@@ -1,0 +1,110 @@
+//! What changes a world between ticks: resets, settings, blend modes, ghosts, going back in time.
+
+use physics_bridge::Settings;
+use policy_core::{BlendMode, GamepadState, GraphPosition, Heading};
+
+use super::{Ghost, LEAST_FRICTION, SimError, Simulation};
+
+impl Simulation {
+    /// Stands a character up where it is.
+    pub fn stand_up(&mut self, index: usize) {
+        let (at, heading) = (self.steered[index].position(), self.steered[index].heading());
+        let at = if at.is_finite() { at } else { self.config.start_of(index) };
+        if self.crowd.character_mut(index).stand_at(at.x, at.y, heading, 0.0).is_ok() {
+            self.totals.stood_up += 1;
+            self.restart(index);
+        }
+    }
+
+    /// Puts every character back to the start.
+    pub fn reset(&mut self) {
+        if self.playback.is_some() {
+            return self.show_pose(0);
+        }
+        for index in 0..self.steered.len() {
+            let (at, heading) = (self.config.start_of(index), self.config.heading_of(index));
+            if self.crowd.character_mut(index).stand_at(at.x, at.y, heading, 0.0).is_ok() {
+                self.restart(index);
+            }
+        }
+        self.mapper.reset();
+        self.last_pad = GamepadState::default();
+        self.restart_ghost();
+    }
+
+    /// Begins anew with a character that was put somewhere. The player's history begins with its pad.
+    fn restart(&mut self, index: usize) {
+        self.steered[index].restart(self.crowd.character(index));
+        if index == 0 {
+            self.pads.clear();
+            *self.pads.next() = self.last_pad;
+        }
+    }
+
+    /// Changes gravity, friction, strength and mass. Friction below [`LEAST_FRICTION`] is raised to it.
+    ///
+    /// # Errors
+    /// When a setting is out of its range; nothing is changed then.
+    pub fn set_settings(&mut self, settings: Settings) -> Result<(), SimError> {
+        let settings = Settings { friction: settings.friction.max(LEAST_FRICTION), ..settings };
+        let model = self.model.with_settings(settings)?;
+        for character in self.crowd.characters_mut() {
+            character.set_model(&model)?;
+        }
+        if let Some(ghost) = &mut self.ghost {
+            ghost.character_mut().set_model(&model)?;
+        }
+        self.model = model;
+        Ok(())
+    }
+
+    /// How every controller makes an action of a blend, from the next tick on. The ghost keeps its own mode.
+    pub fn set_blend_mode(&mut self, mode: BlendMode) {
+        self.steered.iter_mut().for_each(|steered| steered.controller.set_blend_mode(mode));
+    }
+
+    /// A second character from the player's present state, under another blend mode.
+    pub fn start_ghost(&mut self, mode: BlendMode) {
+        self.ghost = Ghost::of(self.crowd.character(0), &self.steered[0], mode);
+    }
+
+    /// Ends the comparison.
+    pub fn stop_ghost(&mut self) {
+        self.ghost = None;
+    }
+
+    /// Starts the ghost again from the player's present state, if there is one.
+    fn restart_ghost(&mut self) {
+        if let Some(ghost) = self.ghost.take() {
+            self.start_ghost(ghost.mode());
+        }
+    }
+
+    /// Takes every character that keeps a history to its state `age` ticks ago, with its controller. The next tick
+    /// continues from there as it did the first time, bit for bit under the same pad; what came after is forgotten.
+    pub fn rewind_to(&mut self, age: usize) {
+        for (steered, character) in self.steered.iter_mut().zip(self.crowd.characters_mut()) {
+            if character.rewind_to(age).is_ok() {
+                steered.rewind_to(age, character);
+            }
+        }
+        if let Some(pad) = self.pads.rewind_to(age).copied() {
+            self.last_pad = pad;
+            // The mapper remembers the buttons of the pad that it saw last.
+            self.mapper.map(&pad, Heading::FORWARD, &self.steered[0].state);
+        }
+        self.restart_ghost();
+    }
+
+    pub(super) fn renew_controllers(&mut self) {
+        for steered in &mut self.steered {
+            steered.renew_controller().expect("the state comes from a controller of the same pack");
+        }
+    }
+
+    /// Puts the player's controller at a position on the graph at once. Returns false when the graph has no such
+    /// position.
+    pub fn place_at(&mut self, position: GraphPosition) -> bool {
+        self.steered[0].controller.place_at(position)
+    }
+}
