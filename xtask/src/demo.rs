@@ -6,7 +6,7 @@ use std::process::ExitCode;
 use anyhow::{Context, Result};
 
 use crate::setup::{self, Purpose};
-use crate::workspace::{Workspace, status_of};
+use crate::workspace::{Workspace, exit_code_of};
 
 /// What `cargo xtask demo --help` says.
 pub const HELP: &str = "\
@@ -87,9 +87,7 @@ pub fn run(workspace: &Workspace, arguments: Vec<OsString>) -> Result<ExitCode> 
     }
     let mut command = workspace.cargo();
     command.args(["run", "--release", "-p", "viewer", "--bin", "policy-space", "--"]).args(request.arguments);
-    let status = status_of(&mut command)?;
-    let code = status.code().and_then(|code| u8::try_from(code).ok());
-    Ok(code.map_or(ExitCode::FAILURE, ExitCode::from))
+    exit_code_of(&mut command)
 }
 
 #[cfg(test)]

@@ -17,7 +17,7 @@ use anyhow::Result;
 use clap::{Args, Parser, Subcommand};
 
 use crate::setup::Purpose;
-use crate::workspace::{Workspace, run};
+use crate::workspace::{Workspace, exit_code_of};
 
 /// Set-up, demo, checks and benchmarks of Policy Space.
 ///
@@ -124,10 +124,9 @@ fn dispatch(verb: Verb) -> Result<ExitCode> {
         Verb::Fuzz(arguments) => fuzz::run(&workspace, &arguments)?,
         Verb::Hostile(arguments) => hostile::run(&workspace, &arguments)?,
         Verb::Pad { arguments } => {
-            run(workspace
-                .cargo()
-                .args(["run", "--quiet", "-p", "gamepad", "--bin", "pad", "--"])
-                .args(arguments))?;
+            let mut pad = workspace.cargo();
+            pad.args(["run", "--quiet", "-p", "gamepad", "--bin", "pad", "--"]).args(arguments);
+            return exit_code_of(&mut pad);
         }
     }
     Ok(ExitCode::SUCCESS)

@@ -4,7 +4,7 @@
 
 use std::ffi::OsStr;
 use std::path::{Path, PathBuf};
-use std::process::{Command, ExitStatus, Stdio};
+use std::process::{Command, ExitCode, ExitStatus, Stdio};
 
 use anyhow::{Context, Result, ensure};
 
@@ -85,6 +85,15 @@ pub fn status_of(command: &mut Command) -> Result<ExitStatus> {
     command.status().with_context(|| format!("start `{}`", shown(command)))
 }
 
+/// Runs a command to its end and returns its exit code, for commands that report their own errors.
+///
+/// # Errors
+/// When it cannot be started.
+pub fn exit_code_of(command: &mut Command) -> Result<ExitCode> {
+    let code = status_of(command)?.code().and_then(|code| u8::try_from(code).ok());
+    Ok(code.map_or(ExitCode::FAILURE, ExitCode::from))
+}
+
 /// Runs a command and returns what it wrote to stdout. Its stderr is passed through.
 ///
 /// # Errors
@@ -153,6 +162,14 @@ mod tests {
         let mut command = Command::new("/usr/lib/cargo");
         command.args(["fmt", "--check"]);
         assert_eq!(shown(&command), "cargo fmt --check");
+    }
+
+    #[cfg(unix)]
+    #[test]
+    fn a_command_that_reports_its_own_errors_keeps_its_exit_code() {
+        let code = exit_code_of(Command::new("sh").args(["-c", "exit 3"])).unwrap();
+        assert_eq!(format!("{code:?}"), format!("{:?}", ExitCode::from(3)));
+        assert!(exit_code_of(&mut Command::new("no-such-program-anywhere")).is_err());
     }
 
     #[test]

@@ -23,7 +23,7 @@ pub fn rules_for(id: PadId) -> String {
 /// The rules for every known pad: the whole file.
 #[must_use]
 pub fn rules() -> String {
-    let mut text = String::from("# Gamepads for whoever sits at the machine.\n");
+    let mut text = String::from("# Gamepads for the local user.\n");
     for &(vendor, product, _, _, name) in KNOWN {
         let id = PadId { vendor, product, bus: crate::Bus::Usb };
         // Writing to a string does not fail.
