@@ -103,9 +103,13 @@ pub(crate) fn run(
     for (node, skill) in pack.graph().nodes().iter().zip(&trained) {
         say(format_args!("{:12} {}", node.name, skill.origin))?;
     }
-    let start = Instant::now();
-    CharacterPack::from_bytes(&bytes).with_context(|| format!("cannot load {}", a.out.display()))?;
-    let ms = 1e3 * start.elapsed().as_secs_f32();
+    // The least disturbed of some loads.
+    let mut ms = f32::INFINITY;
+    for _ in 0..9 {
+        let start = Instant::now();
+        CharacterPack::from_bytes(&bytes).with_context(|| format!("cannot load {}", a.out.display()))?;
+        ms = ms.min(1e3 * start.elapsed().as_secs_f32());
+    }
     say(format_args!("wrote {}, {} bytes, loaded in {ms:.1} ms", a.out.display(), bytes.len()))
 }
 
