@@ -26,6 +26,9 @@ use integration_tests::{DT_SECS, HUMANOID_MJCF, reference_pack};
 /// Reads one file. The error is the message that a user would see.
 pub type Read = fn(&Path) -> Result<(), String>;
 
+/// The recipes of the project.
+const RECIPES: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../assets/recipes");
+
 /// All readers by name; `seeds` has sound files for each.
 pub const ALL: &[(&str, Read)] = &[
     ("pack", pack),
@@ -39,6 +42,7 @@ pub const ALL: &[(&str, Read)] = &[
     ("recording", recording),
     ("descriptor", descriptor),
     ("recipe", recipe),
+    ("character", character),
     ("plan", plan),
     ("lineage", lineage),
     ("checkpoint", checkpoint),
@@ -166,8 +170,9 @@ fn recording(path: &Path) -> Result<(), String> {
     Ok(())
 }
 
+/// What a pad says of its reports. It comes from the system, so the file is read with a bound.
 fn descriptor(path: &Path) -> Result<(), String> {
-    let bytes = fs::read(path).map_err(told)?;
+    let bytes = viewer::files::read(path, 4096).map_err(told)?;
     Descriptor::from_bytes(&bytes).map_err(told)?;
     let id = PadId { vendor: 0x1234, product: 1, bus: Bus::Other };
     let mut parser = Parser::new(id, &bytes).map_err(told)?;
@@ -177,9 +182,35 @@ fn descriptor(path: &Path) -> Result<(), String> {
 }
 
 fn recipe(path: &Path) -> Result<(), String> {
-    let recipe = Recipe::load(path).map_err(told)?;
+    // A recipe names its character, whose file is in a folder beside it.
+    let folder = path.parent().unwrap_or(Path::new("."));
+    beside(&folder.join("characters/humanoid.toml"), &Path::new(RECIPES).join("characters/humanoid.toml"))?;
+    used(&Recipe::load(path).map_err(told)?)
+}
+
+/// The file of a character, under a sound recipe.
+fn character(path: &Path) -> Result<(), String> {
+    let folder = path.parent().unwrap_or(Path::new(".")).join("recipes");
+    beside(&folder.join("idle.toml"), &Path::new(RECIPES).join("idle.toml"))?;
+    beside(&folder.join("characters/humanoid.toml"), path)?;
+    used(&Recipe::load(&folder.join("idle.toml")).map_err(told)?)
+}
+
+fn used(recipe: &Recipe) -> Result<(), String> {
     let _ = (recipe.phase_at(recipe.total_samples()), recipe.first(), recipe.last());
     Ok(())
+}
+
+/// Makes `link` another name of `file`.
+fn beside(link: &Path, file: &Path) -> Result<(), String> {
+    let file = std::path::absolute(file).map_err(told)?;
+    fs::create_dir_all(link.parent().expect("a link has a folder")).map_err(told)?;
+    // It is there from the file before, or it is not.
+    let _ = fs::remove_file(link);
+    #[cfg(unix)]
+    return std::os::unix::fs::symlink(file, link).map_err(told);
+    #[cfg(not(unix))]
+    return fs::copy(file, link).map(drop).map_err(told);
 }
 
 fn plan(path: &Path) -> Result<(), String> {

@@ -34,6 +34,7 @@ pub fn write(folder: &Path) {
     copy("dropped", assets.join("humanoid.glb"));
     copy("dropped", root.join("tests/golden/reference.pack.safetensors"));
     copy("mjcf", root.join("tests/assets/quadruped.xml"));
+    copy("character", assets.join("recipes/characters/humanoid.toml"));
     copy("lineage", assets.join("recipes/lineage/humanoid.toml"));
     copy("mjcf", assets.join("humanoid.xml"));
     copy("plan", assets.join("recipes/pack/humanoid.toml"));
