@@ -24,6 +24,7 @@ impl App {
         let why = match refusal {
             Refusal::Upright => "it is up already",
             Refusal::Unknown => "the pack has no such skill",
+            Refusal::TookTooLong => "it could not start in time",
         };
         self.refused = Some((format!("{name}: {why}"), REFUSAL_SECS));
     }
