@@ -1,0 +1,73 @@
+//! Targets, and what is written to Rapier before each of its steps.
+
+use rapier3d::dynamics::{JointAxesMask, JointAxis, MultibodyJointSet, RigidBodySet};
+use rapier3d::math::Vector;
+
+use super::{Articulation, Drive, Removed};
+
+/// A limit farther than this from the angle gets no row in the solver: radians, and seconds of the hinge's velocity.
+///
+/// Rapier solves a row with the whole mass matrix for every limit, and a limit acts only once the angle is beyond it.
+const LIMIT_MARGIN: f32 = 0.1;
+const LIMIT_MARGIN_SECS: f32 = 0.05;
+
+impl Articulation {
+    /// Sets the angles that the motors pull the joints to, radians, in the order of the skeleton. They act from the
+    /// next [`Articulation::before_step`] on. Joints without a finite target keep theirs; targets without a joint
+    /// are ignored.
+    pub fn actuate(&mut self, targets: &[f32]) {
+        for (own, &target) in self.targets.iter_mut().zip(targets) {
+            if target.is_finite() {
+                *own = target;
+            }
+        }
+    }
+
+    /// Writes torques, or motor targets, to Rapier. Call it before each physics step; with [`Drive::Motors`] once
+    /// after each [`Articulation::actuate`] suffices. Replaces the forces and torques that act on the bodies of the
+    /// character. Allocates nothing of its own.
+    ///
+    /// # Errors
+    /// When the game removed a body or joint of the character.
+    pub fn before_step(
+        &mut self,
+        bodies: &mut RigidBodySet,
+        joints: &mut MultibodyJointSet,
+    ) -> Result<(), Removed> {
+        self.multibody(joints)?;
+        let (multibody, _) = joints.get_mut(self.joint).expect("looked up above");
+        match self.drive {
+            Drive::Motors => {
+                for (hinge, &target) in self.hinges.iter().zip(&self.targets) {
+                    let link = multibody.link_mut(hinge.link).expect("looked up above");
+                    link.joint.data.motors[JointAxis::AngX as usize].target_pos = target;
+                }
+                self.torques.fill(Vector::ZERO);
+            }
+            Drive::Torques => {
+                self.torques.fill(Vector::ZERO);
+                for (index, (hinge, motor)) in self.hinges.iter().zip(self.model.motors()).enumerate() {
+                    let speed = multibody.generalized_velocity()[hinge.dof].abs();
+                    let link = multibody.link_mut(hinge.link).expect("looked up above");
+                    let angle = link.joint.coords()[JointAxis::AngX as usize];
+                    let limits = link.joint.data.limits[JointAxis::AngX as usize];
+                    let margin = LIMIT_MARGIN + LIMIT_MARGIN_SECS * speed;
+                    let near = angle < limits.min + margin || angle > limits.max - margin;
+                    link.joint.data.limit_axes.set(JointAxesMask::ANG_X, near);
+                    let torque = motor.gain * (self.targets[index] - angle);
+                    let torque = torque.clamp(-motor.force_limit, motor.force_limit);
+                    let torque = link.local_to_world().rotation * hinge.axis * torque;
+                    self.torques[hinge.child] += torque;
+                    self.torques[hinge.parent] -= torque;
+                }
+            }
+        }
+        for (&link, &torque) in self.links.iter().zip(&self.torques) {
+            let body = bodies.get_mut(link).ok_or_else(|| self.removed_body(link))?;
+            body.reset_forces(false);
+            body.reset_torques(false);
+            body.add_torque(torque, false);
+        }
+        Ok(())
+    }
+}

@@ -1,0 +1,301 @@
+//! One character alone on the ground of its MJCF, in a world of its own.
+
+mod diverged;
+mod push;
+
+use policy_core::{BodyId, CharacterState, Command, Controller, Heading};
+use rapier3d::geometry::{Collider, InteractionGroups};
+use rapier3d::math::Vector;
+use rapier3d::pipeline::PhysicsWorld;
+
+use crate::articulation::{Articulation, Drive, PlaceError, Sets};
+use crate::model::Model;
+use crate::pose::{Pose, PoseError};
+
+use self::push::Pushes;
+
+pub use self::diverged::{Cause, Diverged, MAX_DEPTH_M, MAX_DISTANCE_M, MAX_SPEED_MPS, MAX_SPIN_RADPS};
+pub use self::push::PushError;
+
+/// Speed at which the humanoid's policy that only walks can start, metres per second.
+pub const WALKING_START_MPS: f32 = 1.2;
+
+/// Physics steps per second with [`Drive::Motors`], and Rapier's substeps in each.
+const MOTORS_HZ: f32 = 60.0;
+const MOTORS_SUBSTEPS: usize = 2;
+
+/// Why a whole character can't lose a part here: its world is only read from outside.
+const WHOLE: &str = "nobody removes parts of a character in its own world";
+
+/// One character. Each control tick calls [`Character::sense_into`], [`Character::actuate`] and
+/// [`Character::step`], or [`Character::control_tick`] for all of them.
+///
+/// The world has the geoms of the MJCF's world and nothing else. For props, terrain and other characters put an
+/// [`Articulation`] into a world of your own.
+///
+/// ```
+/// # fn main() -> Result<(), Box<dyn std::error::Error>> {
+/// # const HUMANOID: &str = include_str!(concat!(env!("CARGO_MANIFEST_DIR"), "/../../assets/humanoid.xml"));
+/// use physics_rapier::{Character, Model};
+/// use policy_core::{CharacterState, JointTargets};
+///
+/// let model = Model::from_mjcf(HUMANOID)?;
+/// let mut character = Character::new(&model);
+/// let mut state = CharacterState::new(model.skeleton());
+/// let targets = JointTargets::new(model.skeleton());
+/// for _ in 0..3 {
+///     character.sense_into(&mut state);
+///     // a controller makes targets of the state here
+///     character.actuate(&targets);
+///     character.step()?;
+/// }
+/// assert_eq!(character.tick(), 3);
+/// # Ok(())
+/// # }
+/// ```
+pub struct Character {
+    world: PhysicsWorld,
+    articulation: Articulation,
+    steps: u32,
+    tick: u64,
+    pushes: Pushes,
+    /// The state before the last tick, to fall back on.
+    before: Pose,
+    /// What was sensed at the start of the last [`Character::control_tick`].
+    sensed: CharacterState,
+    /// What the last step ended in, to check it.
+    after: CharacterState,
+}
+
+impl Character {
+    /// A character that stands at rest at the origin, facing along x, driven by [`Drive::Torques`]. Allocates.
+    #[must_use]
+    pub fn new(model: &Model) -> Self {
+        Self::with_drive(model, Drive::Torques)
+    }
+
+    /// The same with another drive. [`Drive::Torques`] steps at the model's physics rate with one substep,
+    /// [`Drive::Motors`] at 60 Hz with two.
+    #[must_use]
+    pub fn with_drive(model: &Model, drive: Drive) -> Self {
+        let (world, articulation) = world(model, drive);
+        let steps = match drive {
+            Drive::Torques => model.substeps(),
+            Drive::Motors => motor_steps(model),
+        };
+        let mut character = Self {
+            world,
+            articulation,
+            steps,
+            tick: 0,
+            pushes: Pushes::new(model.skeleton()),
+            before: Pose::new(model.skeleton()),
+            sensed: CharacterState::new(model.skeleton()),
+            after: CharacterState::new(model.skeleton()),
+        };
+        character.stand_at(0.0, 0.0, Heading::FORWARD, 0.0).expect("finite numbers, a checked pose");
+        character
+    }
+
+    /// The model it was made of.
+    #[must_use]
+    pub fn model(&self) -> &Model {
+        self.articulation.model()
+    }
+
+    /// The world, to draw it or to look for contacts.
+    #[must_use]
+    pub fn world(&self) -> &PhysicsWorld {
+        &self.world
+    }
+
+    /// The character in it.
+    #[must_use]
+    pub fn articulation(&self) -> &Articulation {
+        &self.articulation
+    }
+
+    /// Control ticks completed since the character was posed.
+    #[must_use]
+    pub fn tick(&self) -> u64 {
+        self.tick
+    }
+
+    /// Writes what a policy senses. Allocates only when `out` was made for another skeleton.
+    pub fn sense_into(&self, out: &mut CharacterState) {
+        sense_into(&self.world, &self.articulation, out);
+    }
+
+    /// Sets the angles that the motors pull the joints to, radians, in the order of the skeleton. They hold until
+    /// the next call. Joints without a finite target keep theirs; targets without a joint are ignored.
+    pub fn actuate(&mut self, targets: &[f32]) {
+        self.articulation.actuate(targets);
+    }
+
+    /// Runs one control tick of physics. Allocates nothing but what Rapier does.
+    ///
+    /// # Errors
+    /// When a body ends the tick beyond a limit of plausible motion ([`MAX_SPEED_MPS`] and the others). The
+    /// character is then back in its pose before the tick, and a caller must reset it or it diverges again.
+    pub fn step(&mut self) -> Result<(), Diverged> {
+        let (world, articulation) = (&mut self.world, &mut self.articulation);
+        articulation.pose_into(&world.bodies, &world.multibody_joints, &mut self.before).expect(WHOLE);
+        for _ in 0..self.steps {
+            articulation.before_step(&mut world.bodies, &mut world.multibody_joints).expect(WHOLE);
+            self.pushes.apply(&mut world.bodies, articulation.bodies(), world.integration_parameters.dt);
+            world.step();
+        }
+        sense_into(world, articulation, &mut self.after);
+        if let Some(diverged) = diverged::check(articulation.model().skeleton(), &self.after, self.tick) {
+            let targets = articulation.targets().to_vec();
+            let before = self.before.clone();
+            self.restart(&before.qpos, &before.qvel);
+            self.articulation.actuate(&targets);
+            return Err(diverged);
+        }
+        self.tick += 1;
+        Ok(())
+    }
+
+    /// Runs one control tick: senses the character, lets `controller` make joint targets of the state and of
+    /// `command`, and steps the physics. `dt_secs` is the control period, usually 1 over [`Model::control_hz`].
+    ///
+    /// # Errors
+    /// As [`Character::step`]. The controller has then completed its tick and the character has not.
+    pub fn control_tick(
+        &mut self,
+        controller: &mut Controller,
+        command: &Command,
+        dt_secs: f32,
+    ) -> Result<(), Diverged> {
+        sense_into(&self.world, &self.articulation, &mut self.sensed);
+        let targets = controller.tick(&self.sensed, command, dt_secs);
+        self.articulation.actuate(targets);
+        self.step()
+    }
+
+    /// What the character sensed at the start of the last control tick; zero before the first.
+    #[must_use]
+    pub fn sensed(&self) -> &CharacterState {
+        &self.sensed
+    }
+
+    /// Puts the character into any position and velocity, laid out as in [`Pose`], and forgets everything else:
+    /// time, targets, pushes, contacts. The motors hold the pose until [`Character::actuate`] is called. Builds the
+    /// world anew, so equal poses have equal futures. Allocates.
+    ///
+    /// # Errors
+    /// When there are more or fewer numbers than the character has, a number is not finite or the quaternion is no
+    /// rotation; the character is then unchanged.
+    pub fn set_pose(&mut self, qpos: &[f64], qvel: &[f64]) -> Result<(), PoseError> {
+        Pose::check(qpos, qvel, self.model().skeleton().joint_count())?;
+        self.restart(qpos, qvel);
+        self.tick = 0;
+        self.pushes.clear();
+        Ok(())
+    }
+
+    /// Stands the character on the ground at a point, metres, world space, facing along `heading`, its lowest
+    /// point touching the ground. All of it moves along `heading` at `speed_mps`: 0 for a policy that stands,
+    /// [`WALKING_START_MPS`] for one that only walks and would fall from a standstill. Allocates.
+    ///
+    /// # Errors
+    /// When a number is not finite; the character is then unchanged.
+    pub fn stand_at(&mut self, x: f32, y: f32, heading: Heading, speed_mps: f32) -> Result<(), PoseError> {
+        let point = [x, y, height_at(&self.world, x, y)];
+        match self.articulation.stand_at(&mut Sets::from(&mut self.world), point, heading, speed_mps) {
+            Ok(()) => {}
+            Err(PlaceError::Pose(error)) => return Err(error),
+            Err(PlaceError::Removed(_)) => unreachable!("{WHOLE}"),
+        }
+        let Pose { qpos, qvel } = self.pose();
+        self.set_pose(&qpos, &qvel)
+    }
+
+    /// Position and velocity now. Allocates; see [`Character::pose_into`].
+    #[must_use]
+    pub fn pose(&self) -> Pose {
+        let mut pose = Pose::new(self.model().skeleton());
+        self.pose_into(&mut pose);
+        pose
+    }
+
+    /// Writes position and velocity. Allocates only when `out` was made for another skeleton.
+    pub fn pose_into(&self, out: &mut Pose) {
+        self.articulation.pose_into(&self.world.bodies, &self.world.multibody_joints, out).expect(WHOLE);
+    }
+
+    /// Centre of mass of the whole character, metres, world space.
+    #[must_use]
+    pub fn centre_of_mass(&self) -> policy_core::glam::Vec3 {
+        let bodies = self.articulation.bodies().iter().map(|&body| &self.world.bodies[body]);
+        let (sum, mass) = bodies.fold((Vector::ZERO, 0.0), |(sum, mass), body| {
+            (sum + body.mass() * body.center_of_mass(), mass + body.mass())
+        });
+        crate::convert::vec3(sum / mass)
+    }
+
+    /// True while a push acts on `body`, or an impulse waits for the next physics step.
+    #[must_use]
+    pub fn is_pushed(&self, body: BodyId) -> bool {
+        self.pushes.acts_on(body)
+    }
+
+    /// A new world with the character in this pose.
+    fn restart(&mut self, qpos: &[f64], qvel: &[f64]) {
+        let drive = self.articulation.drive();
+        let (world, articulation) = world(self.articulation.model(), drive);
+        (self.world, self.articulation) = (world, articulation);
+        self.articulation
+            .set_pose(&mut Sets::from(&mut self.world), qpos, qvel)
+            .expect("a checked pose, or one of this character");
+    }
+}
+
+impl std::fmt::Debug for Character {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_struct("Character").field("tick", &self.tick).finish_non_exhaustive()
+    }
+}
+
+fn motor_steps(model: &Model) -> u32 {
+    (MOTORS_HZ / model.control_hz()).round().max(1.0) as u32
+}
+
+/// A world with the ground of the MJCF and one character.
+fn world(model: &Model, drive: Drive) -> (PhysicsWorld, Articulation) {
+    let mut world = PhysicsWorld { gravity: model.gravity(), ..PhysicsWorld::new() };
+    let parameters = &mut world.integration_parameters;
+    (parameters.dt, parameters.num_solver_iterations) = match drive {
+        Drive::Torques => (model.timestep_secs() as f32, 1),
+        Drive::Motors => (1.0 / (model.control_hz() * motor_steps(model) as f32), MOTORS_SUBSTEPS),
+    };
+    for collider in model.ground() {
+        let mut collider = collider.clone();
+        collider.set_collision_groups(InteractionGroups::all());
+        world.colliders.insert(collider);
+    }
+    let articulation =
+        Articulation::insert(model, &mut Sets::from(&mut world), drive, InteractionGroups::all());
+    (world, articulation)
+}
+
+fn sense_into(world: &PhysicsWorld, articulation: &Articulation, out: &mut CharacterState) {
+    articulation.sense_into(&world.bodies, &world.multibody_joints, 0.0, out).expect(WHOLE);
+    let root = out.root().position;
+    out.ground_height = height_at(world, root.x, root.y);
+}
+
+/// Height of the planes at a point, metres; 0 without one.
+fn height_at(world: &PhysicsWorld, x: f32, y: f32) -> f32 {
+    let loose = world.colliders.iter().map(|(_, c)| c).filter(|c| c.parent().is_none());
+    loose.filter_map(|collider| plane_height(collider, x, y)).reduce(f32::max).unwrap_or(0.0)
+}
+
+/// Height of a plane that faces up.
+fn plane_height(collider: &Collider, x: f32, y: f32) -> Option<f32> {
+    let plane = collider.shape().as_halfspace()?;
+    let normal = collider.rotation() * plane.normal;
+    let to = collider.translation() - Vector::new(x, y, 0.0);
+    (normal.z > 0.1).then(|| normal.dot(to) / normal.z)
+}

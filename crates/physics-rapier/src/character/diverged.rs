@@ -1,0 +1,67 @@
+//! What motion is implausible, and the error that says so.
+
+use policy_core::{CharacterState, Skeleton};
+
+/// Greatest speed of a body, metres per second.
+pub const MAX_SPEED_MPS: f32 = 50.0;
+
+/// Greatest angular velocity of a body, radians per second.
+pub const MAX_SPIN_RADPS: f32 = 200.0;
+
+/// How far below the ground a body's frame may be, metres.
+pub const MAX_DEPTH_M: f32 = 0.5;
+
+/// Greatest distance from the origin, metres.
+pub const MAX_DISTANCE_M: f32 = 10_000.0;
+
+/// What was implausible.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum Cause {
+    /// A number is not finite.
+    NotFinite,
+    /// Faster than [`MAX_SPEED_MPS`].
+    TooFast,
+    /// Spins faster than [`MAX_SPIN_RADPS`].
+    SpinsTooFast,
+    /// Deeper than [`MAX_DEPTH_M`].
+    BelowGround,
+    /// Farther than [`MAX_DISTANCE_M`].
+    TooFarAway,
+}
+
+/// The physics diverged.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[error("in tick {tick}: expected at most {limit} of body \"{body}\", found {found} ({cause:?})")]
+#[non_exhaustive]
+pub struct Diverged {
+    /// Control ticks completed before.
+    pub tick: u64,
+    /// What was implausible.
+    pub cause: Cause,
+    /// Name of the body.
+    pub body: String,
+    /// The limit, in the unit of the cause.
+    pub limit: f32,
+    /// The value.
+    pub found: f32,
+}
+
+/// The first body that moves implausibly.
+pub(super) fn check(skeleton: &Skeleton, state: &CharacterState, tick: u64) -> Option<Diverged> {
+    for (body, motion) in skeleton.bodies().iter().zip(&state.bodies) {
+        let sizes = [
+            (Cause::TooFast, MAX_SPEED_MPS, motion.linear_velocity.length()),
+            (Cause::SpinsTooFast, MAX_SPIN_RADPS, motion.angular_velocity.length()),
+            (Cause::BelowGround, MAX_DEPTH_M, state.ground_height - motion.position.z),
+            (Cause::TooFarAway, MAX_DISTANCE_M, motion.position.length()),
+        ];
+        // Written so that a number that is not finite fails.
+        let bad = sizes.into_iter().find(|&(_, limit, found)| !(found <= limit));
+        if let Some((cause, limit, found)) = bad {
+            let cause = if found.is_finite() { cause } else { Cause::NotFinite };
+            return Some(Diverged { tick, cause, body: body.name.clone(), limit, found });
+        }
+    }
+    None
+}

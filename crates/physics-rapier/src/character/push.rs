@@ -1,0 +1,127 @@
+//! Pushes from outside: a force on a body for a while, or an impulse.
+//!
+//! Both become forces. Rapier loses an impulse on a link of a multibody.
+
+use policy_core::glam::Vec3;
+use policy_core::{BodyId, Skeleton};
+use rapier3d::dynamics::{RigidBodyHandle, RigidBodySet};
+
+use super::Character;
+use crate::convert::vector;
+
+/// Why a push is refused.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum PushError {
+    /// The character has no such body.
+    #[error("expected one of {bodies} bodies, found index {found}")]
+    Body {
+        /// Bodies of the character.
+        bodies: usize,
+        /// Index of the body.
+        found: usize,
+    },
+    /// A number is not finite, or too large to mean anything.
+    #[error("expected {what} of at most {most} in size, found {found}")]
+    Size {
+        /// `a force` in newtons, `an impulse` in newton seconds or `a duration` in seconds.
+        what: &'static str,
+        /// The limit.
+        most: f32,
+        /// Its size.
+        found: f32,
+    },
+}
+
+/// Largest force, newtons, and largest impulse, newton seconds.
+const MOST_FORCE: f32 = 1e6;
+
+/// Longest push, seconds.
+const MOST_SECS: f32 = 3600.0;
+
+/// The pushes under way, one entry for each body. World axes, at the centre of mass of each body.
+pub(super) struct Pushes {
+    /// Newtons.
+    forces: Vec<Vec3>,
+    /// How much longer each force acts, physics steps.
+    steps_left: Vec<u32>,
+    /// Newton seconds, for the next physics step.
+    impulses: Vec<Vec3>,
+}
+
+impl Pushes {
+    /// No push. Allocates.
+    pub(super) fn new(skeleton: &Skeleton) -> Self {
+        let count = skeleton.body_count();
+        Self {
+            forces: vec![Vec3::ZERO; count],
+            steps_left: vec![0; count],
+            impulses: vec![Vec3::ZERO; count],
+        }
+    }
+
+    /// Ends every push.
+    pub(super) fn clear(&mut self) {
+        self.steps_left.fill(0);
+        self.impulses.fill(Vec3::ZERO);
+    }
+
+    pub(super) fn acts_on(&self, body: BodyId) -> bool {
+        let index = body.index();
+        self.steps_left.get(index).is_some_and(|&left| left > 0)
+            || self.impulses.get(index).is_some_and(|&impulse| impulse != Vec3::ZERO)
+    }
+
+    /// Adds the forces of the physics step that comes next.
+    pub(super) fn apply(&mut self, bodies: &mut RigidBodySet, handles: &[RigidBodyHandle], dt_secs: f32) {
+        for (index, &handle) in handles.iter().enumerate() {
+            let mut force = std::mem::take(&mut self.impulses[index]) / dt_secs;
+            if self.steps_left[index] > 0 {
+                self.steps_left[index] -= 1;
+                force += self.forces[index];
+            }
+            if force != Vec3::ZERO {
+                bodies[handle].add_force(vector(force), true);
+            }
+        }
+    }
+}
+
+impl Character {
+    /// Pushes `body` at its centre of mass with `force` newtons, world axes, for `secs` from now, rounded to whole
+    /// physics steps. Replaces the push that still acts on the body. Posing the character ends it.
+    ///
+    /// # Errors
+    /// When there is no such body, a number is not finite, the force is over 1 MN, or the duration negative or over
+    /// an hour.
+    pub fn push(&mut self, body: BodyId, force: Vec3, secs: f32) -> Result<(), PushError> {
+        self.check_body(body)?;
+        at_most("a force", force.length(), MOST_FORCE)?;
+        at_most("a duration", secs, MOST_SECS)?;
+        self.pushes.forces[body.index()] = force;
+        self.pushes.steps_left[body.index()] = (secs / self.world.integration_parameters.dt).round() as u32;
+        Ok(())
+    }
+
+    /// Hits `body` at its centre of mass with `impulse` newton seconds, world axes, during the next physics step.
+    /// Several impulses before it add up.
+    ///
+    /// # Errors
+    /// When there is no such body, or the impulse is not finite or over 1 MN s.
+    pub fn impulse(&mut self, body: BodyId, impulse: Vec3) -> Result<(), PushError> {
+        self.check_body(body)?;
+        let sum = self.pushes.impulses[body.index()] + impulse;
+        at_most("an impulse", sum.length(), MOST_FORCE)?;
+        self.pushes.impulses[body.index()] = sum;
+        Ok(())
+    }
+
+    fn check_body(&self, body: BodyId) -> Result<(), PushError> {
+        let (found, bodies) = (body.index(), self.pushes.forces.len());
+        if found < bodies { Ok(()) } else { Err(PushError::Body { bodies, found }) }
+    }
+}
+
+fn at_most(what: &'static str, found: f32, most: f32) -> Result<(), PushError> {
+    if (0.0..=most).contains(&found) { Ok(()) } else { Err(PushError::Size { what, most, found }) }
+}

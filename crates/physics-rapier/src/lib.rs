@@ -1,0 +1,69 @@
+//! Characters of policy-core in Rapier: sense, actuate, step, in a game's world or in one of their own.
+//!
+//! The same policies run here that were trained in MuJoCo, and the functions have the names of physics-bridge where
+//! they mean the same. A [`Model`] is an immutable description, made of an MJCF. An [`Articulation`] is one character
+//! inside any Rapier world, such as a game's. A [`Character`] is one character alone in a world of its own.
+//!
+//! ```
+//! # fn main() -> Result<(), Box<dyn std::error::Error>> {
+//! use std::sync::Arc;
+//! use physics_rapier::{Character, Model};
+//! use policy_core::{CharacterPack, Command, Controller};
+//!
+//! # let root = concat!(env!("CARGO_MANIFEST_DIR"), "/../../assets");
+//! # let pack = CharacterPack::from_bytes(&std::fs::read(format!("{root}/humanoid.pack.safetensors"))?)?;
+//! # let mjcf = std::fs::read_to_string(format!("{root}/humanoid.xml"))?;
+//! // `Model::for_pack(&pack)` suffices when the pack holds its MJCF.
+//! let model = Model::from_mjcf_with_skeleton(&mjcf, pack.skeleton().clone())?;
+//! let mut controller = Controller::new(Arc::new(pack));
+//! let mut character = Character::new(&model);
+//! for _ in 0..10 {
+//!     character.control_tick(&mut controller, &Command::default(), 1.0 / model.control_hz())?;
+//! }
+//! assert_eq!(character.tick(), 10);
+//! # Ok(())
+//! # }
+//! ```
+//!
+//! # Conventions
+//! SI units, radians, world space with z up. Bodies and hinges are in the order of the skeleton. [`Pose`] is laid out
+//! as MuJoCo does, quaternions wxyz. Rapier uses another version of glam than policy-core: only the types of
+//! [`rapier3d`] appear where a game's world is meant, and only policy-core's elsewhere.
+//!
+//! # What is done about Rapier
+//! | Rapier and its MJCF loader | here |
+//! |---|---|
+//! | integrate a free root as if its centre of mass were its origin | the root's frame is moved to its centre of mass |
+//! | report the body velocities of the last substep's start | velocities follow from the generalised ones |
+//! | skip planes | [`Character`] has the ground of the MJCF; a game brings its own |
+//! | let limbs touch each other | they do not; characters touch each other |
+//! | damp a free root, let links sleep | neither |
+//! | have rigid joint limits | limits are as soft as MuJoCo's default ones |
+//! | lose impulses on links | pushes and impulses are forces |
+//! | read the files that an MJCF names | such an MJCF is refused |
+//!
+//! MuJoCo's `solref`, `solimp`, cone and solver options have no effect. Feet slip less than in MuJoCo, so characters
+//! walk about 10 % slower.
+//!
+//! # Features
+//! `enhanced-determinism` turns on Rapier's: the same bits on every processor and under wasm32.
+
+mod articulation;
+mod character;
+mod convert;
+mod mjcf;
+mod model;
+mod model_error;
+mod pose;
+mod skeleton;
+
+pub use articulation::{Articulation, Drive, PlaceError, Removed, Sets};
+pub use character::{
+    Cause, Character, Diverged, MAX_DEPTH_M, MAX_DISTANCE_M, MAX_SPEED_MPS, MAX_SPIN_RADPS, PushError,
+    WALKING_START_MPS,
+};
+pub use model::{CONTROL_HZ, Model};
+pub use model_error::ModelError;
+pub use pose::{Pose, PoseError};
+/// Rapier as this crate uses it.
+pub use rapier3d;

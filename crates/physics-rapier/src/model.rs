@@ -1,0 +1,319 @@
+//! A character's body: an MJCF loaded, checked against a skeleton, and shared.
+
+use std::sync::Arc;
+
+use policy_core::{ActuationContract, CharacterPack, JointActuation, Skeleton};
+use rapier3d::dynamics::{JointAxesMask, MassProperties, SpringCoefficients};
+use rapier3d::geometry::{Collider, ColliderSet};
+use rapier3d::math::Vector;
+use rapier3d_mjcf::MjcfRobot;
+use rapier3d_mjcf::mjcf_rs::extras::ActuatorKind;
+
+use crate::model_error::ModelError;
+use crate::pose::{Pose, ROOT_QPOS};
+use crate::skeleton::{Places, kind};
+use crate::{mjcf, skeleton};
+
+/// Control ticks per second, unless a pack says otherwise.
+pub const CONTROL_HZ: u32 = 30;
+
+/// Name of the keyframe in which a character stands.
+const STAND: &str = "stand";
+
+/// Joint limits as soft as MuJoCo's default `solreflimit` of 0.02 s and a damping ratio of 1. The loader ignores
+/// that attribute, and Rapier's default is all but rigid.
+const LIMIT_SOFTNESS: SpringCoefficients<f32> =
+    SpringCoefficients { natural_frequency: 1.0 / (std::f32::consts::TAU * 0.02), damping_ratio: 1.0 };
+
+/// A character's body, shared by many characters. Cloning copies a pointer.
+///
+/// ```
+/// # fn main() -> Result<(), physics_rapier::ModelError> {
+/// # const HUMANOID: &str = include_str!(concat!(env!("CARGO_MANIFEST_DIR"), "/../../assets/humanoid.xml"));
+/// let model = physics_rapier::Model::from_mjcf(HUMANOID)?;
+/// assert_eq!((model.substeps(), model.skeleton().joint_count()), (4, 28));
+/// assert!((model.mass_kg() - 48.89).abs() < 0.01);
+/// # Ok(())
+/// # }
+/// ```
+#[derive(Clone)]
+pub struct Model {
+    shared: Arc<Shared>,
+}
+
+struct Shared {
+    skeleton: Arc<Skeleton>,
+    motors: Vec<JointActuation>,
+    control_hz: f32,
+    timestep_secs: f64,
+    substeps: u32,
+    mass_kg: f64,
+    stand: Pose,
+    /// Bodies and joints, the world's geoms taken out.
+    robot: MjcfRobot,
+    ground: Vec<Collider>,
+    places: Places,
+    root_offset: Vector,
+}
+
+impl Model {
+    /// Loads the text of an MJCF, such as `include_str!("../assets/humanoid.xml")`, for [`CONTROL_HZ`] control ticks
+    /// per second.
+    ///
+    /// The skeleton follows from the text alone. Bodies come in the order of the MJCF, the one with the free joint
+    /// first. Hinges come in the order of their motors. The first body with `head` in its name is the head, those
+    /// with `hand` are hands, those with `foot` or `feet` are feet.
+    ///
+    /// Characters stand in the keyframe `stand`, or else in the pose of the MJCF itself.
+    ///
+    /// # Errors
+    /// When the text is no valid MJCF, names other files, or is no character: one body that floats and carries all
+    /// others, every other joint a limited hinge with a position servo that has a symmetric `forcerange` and no
+    /// `kv`, a `timestep` that divides the control period.
+    pub fn from_mjcf(mjcf: &str) -> Result<Self, ModelError> {
+        Self::load(mjcf, None, CONTROL_HZ as f32)
+    }
+
+    /// As [`Model::from_mjcf`], with the order and the roles of `skeleton`, such as that of a pack of version 1.
+    ///
+    /// # Errors
+    /// As [`Model::from_mjcf`], and when a body or hinge of the skeleton is missing in the MJCF, or has another
+    /// parent, body, axis or range there, or the MJCF has more of them.
+    pub fn from_mjcf_with_skeleton(
+        mjcf: &str,
+        skeleton: impl Into<Arc<Skeleton>>,
+    ) -> Result<Self, ModelError> {
+        Self::load(mjcf, Some(skeleton.into()), CONTROL_HZ as f32)
+    }
+
+    /// The body of a pack, with the pack's skeleton and control rate.
+    ///
+    /// # Errors
+    /// When the pack has no MJCF, as those of version 1, and as [`Model::from_mjcf_with_skeleton`].
+    pub fn for_pack(pack: &CharacterPack) -> Result<Self, ModelError> {
+        let mjcf = pack.mjcf().ok_or(ModelError::NoMjcf)?;
+        Self::load(mjcf, Some(Arc::clone(pack.skeleton())), pack.control_hz())
+    }
+
+    fn load(text: &str, given: Option<Arc<Skeleton>>, control_hz: f32) -> Result<Self, ModelError> {
+        let (mut robot, description) = mjcf::parse(text)?;
+        let skeleton = match given {
+            Some(given) => given,
+            None => Arc::new(skeleton::derive(&robot, &description)?),
+        };
+        let places = skeleton::places(&skeleton, &robot, &description)?;
+        let motors = motors(&robot, &skeleton, &places)?;
+        let timestep_secs = description.option.timestep;
+        let substeps = substeps(control_hz, timestep_secs)?;
+        let stand = stand(&robot, &skeleton, &places)?;
+        // A world of a game has a ground of its own.
+        let ground = std::mem::take(&mut robot.bodies[0].colliders);
+        for joint in &mut robot.joints {
+            joint.joint.softness = LIMIT_SOFTNESS;
+            // The loader's motors are for joints between free bodies; ours are set when a character is inserted.
+            joint.joint.motor_axes = JointAxesMask::empty();
+        }
+        let root_offset = move_root_to_its_centre_of_mass(&mut robot, places.bodies[0]);
+        let mass_kg = robot.bodies.iter().map(|body| f64::from(body.mass)).sum();
+        let shared = Shared {
+            skeleton,
+            motors,
+            control_hz,
+            timestep_secs,
+            substeps,
+            mass_kg,
+            stand,
+            robot,
+            ground,
+            places,
+            root_offset,
+        };
+        Ok(Self { shared: Arc::new(shared) })
+    }
+
+    /// Bodies, hinges and roles.
+    #[must_use]
+    pub fn skeleton(&self) -> &Arc<Skeleton> {
+        &self.shared.skeleton
+    }
+
+    /// How the motors are driven: gains, damping, force limits, armatures, physics rate, mass. Allocates.
+    #[must_use]
+    pub fn actuation(&self) -> ActuationContract {
+        ActuationContract {
+            physics_hz: (1.0 / self.shared.timestep_secs) as f32,
+            mass_kg: self.shared.mass_kg as f32,
+            joints: self.shared.motors.clone(),
+        }
+    }
+
+    /// Control ticks per second.
+    #[must_use]
+    pub fn control_hz(&self) -> f32 {
+        self.shared.control_hz
+    }
+
+    /// Physics steps in a control tick.
+    #[must_use]
+    pub fn substeps(&self) -> u32 {
+        self.shared.substeps
+    }
+
+    /// Length of a physics step, seconds.
+    #[must_use]
+    pub fn timestep_secs(&self) -> f64 {
+        self.shared.timestep_secs
+    }
+
+    /// Mass of the whole character, kilograms.
+    #[must_use]
+    pub fn mass_kg(&self) -> f64 {
+        self.shared.mass_kg
+    }
+
+    pub(crate) fn motors(&self) -> &[JointActuation] {
+        &self.shared.motors
+    }
+
+    /// A standing character at rest; its place means nothing.
+    pub(crate) fn stand(&self) -> &Pose {
+        &self.shared.stand
+    }
+
+    pub(crate) fn robot(&self) -> &MjcfRobot {
+        &self.shared.robot
+    }
+
+    /// The geoms of the MJCF's world.
+    pub(crate) fn ground(&self) -> &[Collider] {
+        &self.shared.ground
+    }
+
+    pub(crate) fn gravity(&self) -> Vector {
+        self.shared.robot.gravity
+    }
+
+    pub(crate) fn places(&self) -> &Places {
+        &self.shared.places
+    }
+
+    /// Where Rapier's root frame is in the MJCF's.
+    pub(crate) fn root_offset(&self) -> Vector {
+        self.shared.root_offset
+    }
+}
+
+impl std::fmt::Debug for Model {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_struct("Model").field("mass_kg", &self.mass_kg()).finish_non_exhaustive()
+    }
+}
+
+/// Gain, damping, force limit and armature of each hinge.
+fn motors(
+    robot: &MjcfRobot,
+    skeleton: &Skeleton,
+    places: &Places,
+) -> Result<Vec<JointActuation>, ModelError> {
+    const WHAT: &str = "motor of hinge";
+    let motor = |(hinge, &place): (&policy_core::training::SkeletonJoint, &usize)| {
+        let name = &hinge.name;
+        let mut own = robot.actuators.iter().filter(|a| a.actuator.joint.as_ref() == Some(name));
+        let missing = || ModelError::Missing { kind: WHAT, name: name.clone() };
+        let actuator = &own.next().ok_or_else(missing)?.actuator;
+        if own.next().is_some() {
+            return Err(kind(WHAT, name, "one motor", "several"));
+        }
+        if actuator.kind != ActuatorKind::Position {
+            return Err(kind(WHAT, name, "a position servo", &format!("{:?}", actuator.kind)));
+        }
+        if actuator.kv.is_some_and(|kv| kv != 0.0) || actuator.gear[0] != 1.0 {
+            return Err(kind(WHAT, name, "no kv and a gear of 1", "others"));
+        }
+        let range = actuator.force_range.unwrap_or_default();
+        if range[1] <= 0.0 || range[0] != -range[1] {
+            return Err(kind(WHAT, name, "a symmetric forcerange", &format!("{range:?}")));
+        }
+        let joint = &robot.joints[place];
+        if !joint.joint.limit_axes.contains(JointAxesMask::ANG_X) {
+            return Err(kind("hinge", name, "a limited range", "none"));
+        }
+        Ok(JointActuation {
+            gain: actuator.kp.unwrap_or(1.0) as f32,
+            damping: joint.damping_per_dof,
+            force_limit: range[1] as f32,
+            armature: joint.armature_per_dof,
+        })
+    };
+    skeleton.joints().iter().zip(&places.joints).map(motor).collect()
+}
+
+fn substeps(control_hz: f32, timestep_secs: f64) -> Result<u32, ModelError> {
+    let substeps = 1.0 / (f64::from(control_hz) * timestep_secs);
+    let whole = substeps.round();
+    if !(1.0..=1000.0).contains(&whole) || (substeps - whole).abs() > 1e-3 {
+        return Err(ModelError::Timestep { control_hz, timestep_secs });
+    }
+    Ok(whole as u32)
+}
+
+/// The keyframe `stand`, or the pose of the MJCF itself, hinges in the skeleton's order.
+fn stand(robot: &MjcfRobot, skeleton: &Skeleton, places: &Places) -> Result<Pose, ModelError> {
+    let mut pose = Pose::new(skeleton);
+    let Some(key) = robot.keyframes.iter().find(|key| key.name.as_deref() == Some(STAND)) else {
+        let root = robot.bodies[places.bodies[0]].body.position();
+        let q = root.rotation;
+        let numbers = [root.translation.x, root.translation.y, root.translation.z, q.w, q.x, q.y, q.z];
+        pose.qpos[..ROOT_QPOS].copy_from_slice(&numbers.map(f64::from));
+        return Ok(pose);
+    };
+    let mut from = 0;
+    for dof in &robot.qpos_dofs {
+        let (to, width) = match dof.joint.map(|joint| places.joints.iter().position(|&p| p == joint)) {
+            None => (0, ROOT_QPOS),
+            Some(hinge) => (ROOT_QPOS + hinge.unwrap_or_default(), 1),
+        };
+        let Some(numbers) = key.qpos.get(from..from + width) else { break };
+        pose.qpos[to..to + width].copy_from_slice(numbers);
+        from += width;
+    }
+    let expected = pose.qpos.len();
+    let found = key.qpos.len();
+    let complete = if found == expected {
+        Ok(())
+    } else {
+        Err(crate::PoseError::Length { field: "qpos", expected, found })
+    };
+    complete
+        .and_then(|()| Pose::check(&pose.qpos, &pose.qvel, skeleton.joint_count()))
+        .map_err(|source| ModelError::Stand { source })?;
+    Ok(pose)
+}
+
+/// Moves the root's frame to its centre of mass and returns by how much.
+///
+/// Rapier takes the linear velocity of a free root as its centre of mass's when it computes forces, and as its
+/// origin's when it integrates. With the two in one place both are right.
+fn move_root_to_its_centre_of_mass(robot: &mut MjcfRobot, root: usize) -> Vector {
+    let entry = &mut robot.bodies[root];
+    let mut body = entry.body.clone();
+    body.recompute_mass_properties_from_colliders(&ColliderSet::new());
+    let mass = body.mass_properties().local_mprops;
+    let offset = mass.local_com;
+    let centred = MassProperties::with_principal_inertia_frame(
+        Vector::ZERO,
+        mass.mass(),
+        mass.principal_inertia(),
+        mass.principal_inertia_local_frame,
+    );
+    entry.body.set_additional_mass_properties(centred, false);
+    for collider in &mut entry.colliders {
+        let mut pose = *collider.position();
+        pose.translation -= offset;
+        collider.set_position(pose);
+    }
+    for joint in robot.joints.iter_mut().filter(|joint| joint.link1 == root) {
+        joint.joint.local_frame1.translation -= offset;
+    }
+    offset
+}
