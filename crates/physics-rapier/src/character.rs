@@ -1,10 +1,10 @@
 //! One character alone on the ground of its MJCF, in a world of its own.
 
 mod diverged;
+mod ground;
 mod push;
 
 use policy_core::{BodyId, CharacterState, Command, Controller, Heading};
-use rapier3d::geometry::{Collider, InteractionGroups};
 use rapier3d::math::Vector;
 use rapier3d::pipeline::PhysicsWorld;
 
@@ -12,6 +12,7 @@ use crate::articulation::{Articulation, Drive, PlaceError, Sets};
 use crate::model::Model;
 use crate::pose::{Pose, PoseError};
 
+use self::ground::{height_at, motor_steps, world};
 use self::push::Pushes;
 
 pub use self::diverged::{Cause, Diverged, MAX_DEPTH_M, MAX_DISTANCE_M, MAX_SPEED_MPS, MAX_SPIN_RADPS};
@@ -19,10 +20,6 @@ pub use self::push::PushError;
 
 /// Speed at which the humanoid's policy that only walks can start, metres per second.
 pub const WALKING_START_MPS: f32 = 1.2;
-
-/// Physics steps per second with [`Drive::Motors`], and Rapier's substeps in each.
-const MOTORS_HZ: f32 = 60.0;
-const MOTORS_SUBSTEPS: usize = 2;
 
 /// Why a whole character can't lose a part here: its world is only read from outside.
 const WHOLE: &str = "nobody removes parts of a character in its own world";
@@ -230,7 +227,8 @@ impl Character {
     pub fn centre_of_mass(&self) -> policy_core::glam::Vec3 {
         let bodies = self.articulation.bodies().iter().map(|&body| &self.world.bodies[body]);
         let (sum, mass) = bodies.fold((Vector::ZERO, 0.0), |(sum, mass), body| {
-            (sum + body.mass() * body.center_of_mass(), mass + body.mass())
+            let centre = *body.position() * body.mass_properties().local_mprops.local_com;
+            (sum + body.mass() * centre, mass + body.mass())
         });
         crate::convert::vec3(sum / mass)
     }
@@ -258,44 +256,8 @@ impl std::fmt::Debug for Character {
     }
 }
 
-fn motor_steps(model: &Model) -> u32 {
-    (MOTORS_HZ / model.control_hz()).round().max(1.0) as u32
-}
-
-/// A world with the ground of the MJCF and one character.
-fn world(model: &Model, drive: Drive) -> (PhysicsWorld, Articulation) {
-    let mut world = PhysicsWorld { gravity: model.gravity(), ..PhysicsWorld::new() };
-    let parameters = &mut world.integration_parameters;
-    (parameters.dt, parameters.num_solver_iterations) = match drive {
-        Drive::Torques => (model.timestep_secs() as f32, 1),
-        Drive::Motors => (1.0 / (model.control_hz() * motor_steps(model) as f32), MOTORS_SUBSTEPS),
-    };
-    for collider in model.ground() {
-        let mut collider = collider.clone();
-        collider.set_collision_groups(InteractionGroups::all());
-        world.colliders.insert(collider);
-    }
-    let articulation =
-        Articulation::insert(model, &mut Sets::from(&mut world), drive, InteractionGroups::all());
-    (world, articulation)
-}
-
 fn sense_into(world: &PhysicsWorld, articulation: &Articulation, out: &mut CharacterState) {
     articulation.sense_into(&world.bodies, &world.multibody_joints, 0.0, out).expect(WHOLE);
     let root = out.root().position;
     out.ground_height = height_at(world, root.x, root.y);
-}
-
-/// Height of the planes at a point, metres; 0 without one.
-fn height_at(world: &PhysicsWorld, x: f32, y: f32) -> f32 {
-    let loose = world.colliders.iter().map(|(_, c)| c).filter(|c| c.parent().is_none());
-    loose.filter_map(|collider| plane_height(collider, x, y)).reduce(f32::max).unwrap_or(0.0)
-}
-
-/// Height of a plane that faces up.
-fn plane_height(collider: &Collider, x: f32, y: f32) -> Option<f32> {
-    let plane = collider.shape().as_halfspace()?;
-    let normal = collider.rotation() * plane.normal;
-    let to = collider.translation() - Vector::new(x, y, 0.0);
-    (normal.z > 0.1).then(|| normal.dot(to) / normal.z)
 }

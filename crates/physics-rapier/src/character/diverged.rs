@@ -56,8 +56,7 @@ pub(super) fn check(skeleton: &Skeleton, state: &CharacterState, tick: u64) -> O
             (Cause::BelowGround, MAX_DEPTH_M, state.ground_height - motion.position.z),
             (Cause::TooFarAway, MAX_DISTANCE_M, motion.position.length()),
         ];
-        // Written so that a number that is not finite fails.
-        let bad = sizes.into_iter().find(|&(_, limit, found)| !(found <= limit));
+        let bad = sizes.into_iter().find(|&(_, limit, found)| found.is_nan() || found > limit);
         if let Some((cause, limit, found)) = bad {
             let cause = if found.is_finite() { cause } else { Cause::NotFinite };
             return Some(Diverged { tick, cause, body: body.name.clone(), limit, found });

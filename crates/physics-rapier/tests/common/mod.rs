@@ -66,7 +66,8 @@ pub fn wriggle(character: &mut Character, ticks: u64) {
     let mut targets = JointTargets::new(character.model().skeleton());
     for _ in 0..ticks {
         for (joint, target) in targets.iter_mut().enumerate() {
-            *target = 0.4 * (0.3 * character.tick() as f32 + joint as f32).sin();
+            // A triangle wave: the standard library's sine differs from machine to machine.
+            *target = ((0.1 * character.tick() as f32 + 0.3 * joint as f32) % 2.0 - 1.0).abs() - 0.5;
         }
         character.actuate(&targets);
         character.step().unwrap();
