@@ -76,6 +76,7 @@ fn length_limit(target: &str) -> &'static str {
     match target {
         "pack" => "-max_len=1000000",
         "manifest" => "-max_len=65536",
+        "state" => "-max_len=8192",
         _ => "-max_len=4096",
     }
 }

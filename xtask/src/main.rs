@@ -45,7 +45,7 @@ enum Verb {
     Test(TestArgs),
     /// Check which crate imports which.
     Imports,
-    /// Check that items and fields have the names of the field, and that no source file is too long.
+    /// Check that items and fields have the names of the field, and report source files that are too long.
     Words,
     /// Check licences, banned crates, sources and security advisories with cargo-deny.
     ///

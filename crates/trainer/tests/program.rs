@@ -18,9 +18,9 @@ discriminator = { hidden = [8], batch = 4, updates = 1, replay_size = 32 }
 "#;
 
 /// A folder with all that a training needs.
-struct Place(tempfile::TempDir);
+struct ScratchFolder(tempfile::TempDir);
 
-impl Place {
+impl ScratchFolder {
     fn new() -> Self {
         let place = Self(tempfile::tempdir().unwrap());
         for folder in ["motions", "recipes"] {
@@ -93,7 +93,7 @@ fn said(output: &Output) -> String {
 
 #[test]
 fn a_signal_saves_the_run_and_nothing_else_touches_it() {
-    let place = Place::new();
+    let place = ScratchFolder::new();
     let checkpoint = place.path("runs/walk/checkpoint.safetensors");
     for (signal, code, arguments) in [
         ("-INT", 130, &["train", "walk"][..]),
@@ -117,7 +117,7 @@ fn a_signal_saves_the_run_and_nothing_else_touches_it() {
 
 #[test]
 fn a_killed_run_is_continued_and_its_end_is_told() {
-    let place = Place::new();
+    let place = ScratchFolder::new();
     let child = place.start(&["train", "walk"]);
     kill("-INT", &child);
     child.wait_with_output().unwrap();
@@ -132,7 +132,7 @@ fn a_killed_run_is_continued_and_its_end_is_told() {
 
 #[test]
 fn a_lineage_is_run_resumed_and_averaged() {
-    let place = Place::new();
+    let place = ScratchFolder::new();
     let plan = "steps = [{ train = { recipe = \"walk\", run = \"first\", samples = 32 } }, \
                 { train = { recipe = \"walk\", run = \"second\", continues = \"first\", samples = 64 } }, \
                 { average = { run = \"walk\", of = [\"second\", \"first\"] } }]";
@@ -166,7 +166,7 @@ fn a_lineage_is_run_resumed_and_averaged() {
 
 #[test]
 fn a_full_disk_under_the_output_is_an_error_and_no_panic() {
-    let place = Place::new();
+    let place = ScratchFolder::new();
     let Ok(full) = File::options().write(true).open("/dev/full") else { return };
     let output = place.command(&["compare", "--repeats", "1"]).stdout(full).output().unwrap();
     assert_eq!(output.status.code(), Some(1), "{}", said(&output));

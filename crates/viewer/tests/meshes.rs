@@ -170,6 +170,16 @@ fn numbers_that_make_no_sense_are_refused() {
 }
 
 #[test]
+fn colours_of_a_type_that_gltf_does_not_know_are_refused() {
+    let message = refused(|document| {
+        let attributes = &document["meshes"][0]["primitives"][0]["attributes"];
+        let accessor = attributes["COLOR_0"].as_u64().unwrap() as usize;
+        document["accessors"][accessor]["componentType"] = 5120.into();
+    });
+    assert!(message.contains("COLOR_0") && message.contains("I8"), "{message}");
+}
+
+#[test]
 fn an_attribute_beyond_the_accessors_is_refused() {
     for name in ["POSITION", "NORMAL", "WEIGHTS_0"] {
         let said = refused(|d| d["meshes"][0]["primitives"][0]["attributes"][name] = 9_999.into());

@@ -10,7 +10,7 @@ use clap::Args;
 use physics_bridge::Model;
 use policy_core::{CharacterPack, CharacterState, ControllerConfig, TurnAssist};
 use trainer::clip::ClipFolder;
-use trainer::evaluate::{Effort, Progress, Section, clip_states, evaluate, plots, table};
+use trainer::evaluate::{Effort, PlayerReport, Progress, Section, clip_states, evaluate, plots, table};
 use trainer::recipe::Recipe;
 use trainer::storage::write_atomically;
 
@@ -20,7 +20,11 @@ use super::output::say;
 #[derive(Args)]
 pub(crate) struct Arguments {
     /// The pack.
-    pack: PathBuf,
+    #[arg(required_unless_present = "from")]
+    pack: Option<PathBuf>,
+    /// Print and draw what an earlier run has written to this file, and measure nothing.
+    #[arg(long, conflicts_with_all = ["pack", "json", "quick", "only"])]
+    from: Option<PathBuf>,
     /// File to write the measures to.
     #[arg(long)]
     json: Option<PathBuf>,
@@ -60,7 +64,12 @@ pub(crate) fn run(
     clips: Option<&ClipFolder>,
     arguments: &Arguments,
 ) -> Result<()> {
-    let path = &arguments.pack;
+    if let Some(path) = &arguments.from {
+        let text = std::fs::read(path).with_context(|| format!("cannot read {}", path.display()))?;
+        let player = serde_json::from_slice(&text).with_context(|| path.display().to_string())?;
+        return show(&player, arguments.plots.as_deref());
+    }
+    let path = arguments.pack.as_ref().context("expected a pack")?;
     let bytes = std::fs::read(path).with_context(|| format!("cannot read {}", path.display()))?;
     let pack = CharacterPack::from_bytes(&bytes).with_context(|| path.display().to_string())?;
     let effort = if arguments.quick { Effort::QUICK } else { Effort::FULL };
@@ -75,10 +84,7 @@ pub(crate) fn run(
     let progress = Progress::bar();
     let evaluation = evaluate(model, &Arc::new(pack), config, (&effort, sections), &states, &progress)?;
     progress.finish();
-    if let Some(svg) = &arguments.plots {
-        plots::draw(&evaluation.player, svg).with_context(|| format!("cannot draw {}", svg.display()))?;
-    }
-    std::io::stderr().lock().write_all(table(&evaluation.player).as_bytes())?;
+    show(&evaluation.player, arguments.plots.as_deref())?;
     let text = serde_json::to_string_pretty(&evaluation)?;
     match &arguments.json {
         Some(path) => {
@@ -88,6 +94,14 @@ pub(crate) fn run(
         None => say(text)?,
     }
     Ok(())
+}
+
+/// Prints the tables and draws the plots.
+fn show(player: &PlayerReport, svg: Option<&Path>) -> Result<()> {
+    if let Some(svg) = svg {
+        plots::draw(player, svg).with_context(|| format!("cannot draw {}", svg.display()))?;
+    }
+    std::io::stderr().lock().write_all(table(player).as_bytes()).context("cannot write to the standard error")
 }
 
 /// States of the first clip of every skill that has a recipe.

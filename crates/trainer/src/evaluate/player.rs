@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use physics_bridge::ModelError;
 use policy_core::{PathId, SkillId};
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 use super::legs::{LegReport, measure_legs};
 use super::press::{
@@ -30,7 +30,8 @@ type By<T> = BTreeMap<String, T>;
 pub(super) const STRAIGHT_COORDINATES: usize = 11;
 
 /// What a player feels. Sections that were not measured are left out.
-#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(default)]
 pub struct PlayerReport {
     /// Turns, starts and stops.
     #[serde(skip_serializing_if = "ResponseReport::is_empty")]
@@ -83,7 +84,8 @@ pub struct PlayerReport {
 }
 
 /// Turns, starts and stops.
-#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(default)]
 pub struct ResponseReport {
     /// From standing.
     #[serde(skip_serializing_if = "Option::is_none")]

@@ -11,7 +11,7 @@ use policy_core::format::{
 use policy_core::training::{Layer, Normaliser, PackTensors};
 use policy_core::{CharacterPack, ControllerConfig, Mlp, Skeleton};
 
-use super::{Effort, Evaluation, Progress, Section, evaluate};
+use super::{Effort, Evaluation, PlayerReport, Progress, Section, evaluate, table};
 
 const HUMANOID: &str = include_str!("../../../../assets/humanoid.xml");
 
@@ -131,6 +131,8 @@ fn measured(falls: bool, effort: &Effort, sections: &[Section]) -> Evaluation {
 fn a_character_that_lies_on_the_ground_never_turns_and_has_all_keys() {
     let evaluation = measured(false, &TINY, &PLAYER);
     let json = serde_json::to_value(&evaluation).unwrap();
+    let read: PlayerReport = serde_json::from_value(json.clone()).unwrap();
+    assert_eq!(table(&read), table(&evaluation.player), "a file says what was measured");
     let gaits = ["idle", "half_stick", "walk", "run", "crawl"];
     for gait in gaits {
         let turn = &json["response"][gait]["turn_180"];

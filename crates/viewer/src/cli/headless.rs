@@ -205,6 +205,7 @@ struct Painter {
     size: [u32; 2],
     panels: bool,
     around: f32,
+    fps: u32,
     folder: PathBuf,
     drawn: usize,
 }
@@ -222,6 +223,7 @@ impl Painter {
             size: demo.size,
             panels: demo.panels.is_some(),
             around: demo.view_angle.to_radians(),
+            fps: demo.fps,
             folder: folder.to_owned(),
             drawn: 0,
         })
@@ -234,7 +236,7 @@ impl Painter {
         let [width, height] = self.size.map(|s| s as f32);
         let input = egui::RawInput {
             screen_rect: Some(egui::Rect::from_min_size(egui::Pos2::ZERO, egui::vec2(width, height))),
-            time: Some(self.drawn as f64 / 30.0),
+            time: Some(self.drawn as f64 / f64::from(self.fps)),
             ..Default::default()
         };
         let output = self.composer.panels(app, input, self.around);

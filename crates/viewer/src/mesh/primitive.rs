@@ -98,14 +98,20 @@ impl Primitive<'_, '_> {
     }
 
     fn colours(&self, count: usize) -> Result<Vec<[u8; 4]>, MeshError> {
-        let reader = self.primitive.reader(self.checked.data());
-        match self.primitive.get(&gltf::Semantic::Colors(0)) {
-            None => Ok(vec![[255; 4]; count]),
-            Some(accessor) if accessor.count() != count => {
-                Err(self.inconsistent(&format!("{count} colours"), accessor.count().to_string()))
-            }
-            Some(_) => Ok(reader.read_colors(0).map(|c| c.into_rgba_u8().collect()).unwrap_or_default()),
+        let Some(accessor) = self.primitive.get(&gltf::Semantic::Colors(0)) else {
+            return Ok(vec![[255; 4]; count]);
+        };
+        let types = [DataType::U8, DataType::U16, DataType::F32];
+        // gltf panics at any other type.
+        if ![Dimensions::Vec3, Dimensions::Vec4].iter().any(|&d| is_kind(&accessor, d, &types)) {
+            let found = format!("{:?} of {:?}", accessor.dimensions(), accessor.data_type());
+            return Err(self.inconsistent(&format!("COLOR_0 as Vec3 or Vec4 of {types:?}"), found));
         }
+        if accessor.count() != count {
+            return Err(self.inconsistent(&format!("{count} colours"), accessor.count().to_string()));
+        }
+        let reader = self.primitive.reader(self.checked.data());
+        Ok(reader.read_colors(0).map(|c| c.into_rgba_u8().collect()).unwrap_or_default())
     }
 
     /// Number of elements of an attribute that must be there.

@@ -63,7 +63,13 @@ impl Bars {
             .y_label_area_size(110)
             .build_cartesian_2d(0.0..end, 0.0..self.rows.len().max(1) as f64)?;
         // Labels stand at whole numbers, names half-way between them: they are drawn by hand.
-        chart.configure_mesh().disable_y_mesh().y_labels(0).x_labels(6).draw()?;
+        chart
+            .configure_mesh()
+            .disable_y_mesh()
+            .light_line_style(TRANSPARENT)
+            .y_labels(0)
+            .x_labels(6)
+            .draw()?;
         for (row, (name, _)) in self.rows.iter().enumerate() {
             let style = ("sans-serif", 12).into_text_style(area).pos(right_aligned());
             let (x, y) = chart.backend_coord(&(0.0, row as f64 + 0.5));
@@ -116,7 +122,13 @@ impl Lines {
             .x_label_area_size(34)
             .y_label_area_size(40)
             .build_cartesian_2d(0.0..end, 0.0..top)?;
-        chart.configure_mesh().x_desc(self.x_title).x_labels(7).y_labels(6).draw()?;
+        chart
+            .configure_mesh()
+            .light_line_style(TRANSPARENT)
+            .x_desc(self.x_title)
+            .x_labels(7)
+            .y_labels(6)
+            .draw()?;
         for (index, (name, points)) in self.lines.iter().enumerate() {
             let colour = COLOURS[index % COLOURS.len()];
             let series =

@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use policy_core::bindings::{Bindings, Control};
 use policy_core::{Button, CharacterPack, SkillEnd, SkillId};
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 use crate::evaluate::Rig;
 use crate::evaluate::trial::{Settled, TICK_SECS, median, ticks};
@@ -19,7 +19,8 @@ const WATCHED_SECS: f32 = 6.0;
 const AFTER_SECS: f32 = 1.0;
 
 /// Presses of one button in one gait.
-#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(default)]
 pub struct PressReport {
     /// The skill that the button starts, if the pack has it.
     pub skill: Option<String>,

@@ -1,7 +1,7 @@
 //! How far the joint targets jump when a skill starts and when it ends.
 
 use policy_core::Buttons;
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 use super::bound_buttons;
 use crate::evaluate::Rig;
@@ -11,7 +11,8 @@ use crate::evaluate::trial::{Settled, median, ticks};
 const WATCHED_SECS: f32 = 4.0;
 
 /// Medians of the largest change of a joint target from one tick to the next, radians. `None` where no skill started or ended.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(default)]
 pub struct JumpReport {
     /// In the tick in which a skill starts.
     pub skill_start_rad: Option<f32>,

@@ -1,6 +1,6 @@
 //! From a crawl to its feet: the left trigger is let go, the stick stays pushed.
 
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 use crate::evaluate::Rig;
 use crate::evaluate::trial::{Settled, TICK_SECS, median, ticks};
@@ -12,7 +12,8 @@ const LIMIT_SECS: f32 = 12.0;
 const HOLD_SECS: f32 = 0.3;
 
 /// Rises out of a crawl.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(default)]
 pub struct RiseReport {
     /// Rises without a skill.
     pub by_itself: usize,

@@ -1,6 +1,6 @@
 //! Starts: how long from standing until the character moves.
 
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 use crate::evaluate::Rig;
 use crate::evaluate::trial::{Settled, TICK_SECS, median, ticks};
@@ -21,7 +21,8 @@ const LIMIT_SECS: f32 = 12.0;
 const NOMINAL_SECS: f32 = 2.5;
 
 /// Medians over starts straight ahead; `None` when half of them never come.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(default)]
 pub struct StartReport {
     /// Seconds to 0.9 m/s with a full stick.
     pub walk_s: Option<f32>,

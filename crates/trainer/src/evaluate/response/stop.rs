@@ -1,6 +1,6 @@
 //! Stops: how long and how far the character goes on after the stick is let go.
 
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 use crate::evaluate::Rig;
 use crate::evaluate::trial::{Settled, TICK_SECS, median, ticks};
@@ -18,7 +18,8 @@ const LIMIT_SECS: f32 = 12.0;
 const NOMINAL_SECS: f32 = 3.5;
 
 /// Medians over stops; `None` when half of them never come.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(default)]
 pub struct StopReport {
     /// Seconds until the pelvis is slower than 0.15 m/s for 0.3 s.
     pub s: Option<f32>,

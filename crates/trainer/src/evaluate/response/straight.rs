@@ -2,7 +2,7 @@
 
 use glam::Vec2;
 use policy_core::{CharacterPack, Goal, NodeId, PathId};
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 use crate::Rng;
 use crate::evaluate::Rig;
@@ -24,7 +24,8 @@ const NOMINAL_SECS: f32 = SETTLE_SECS + MEASURED_SECS + 2.0;
 const LEAST_MPS: f32 = 0.1;
 
 /// Straight ahead at one coordinate; means over the characters that do not fall.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(default)]
 pub struct StraightPoint {
     /// Place on the path.
     pub coordinate: f32,

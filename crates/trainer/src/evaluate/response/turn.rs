@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 use std::f32::consts::PI;
 
 use glam::Vec2;
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 use crate::evaluate::Rig;
 use crate::evaluate::trial::{Settled, TICK_SECS, median, quantile, ticks};
@@ -28,7 +28,8 @@ const HOLD_SECS: f32 = 0.3;
 const LEAST_MPS: f32 = 0.1;
 
 /// Turns of one angle, to both sides.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(default)]
 pub struct TurnReport {
     /// Median of the seconds, `None` when half of the turns never end.
     pub median_s: Option<f32>,

@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use glam::Vec2;
 use physics_bridge::{Model, ModelError};
 use policy_core::SkillId;
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 use super::terrain::GROUNDS;
 use crate::Rng;
@@ -29,7 +29,8 @@ const AFTER_SECS: f32 = 5.0;
 pub(in crate::evaluate) const NOMINAL_SECS: f32 = 10.0;
 
 /// Drops on one ground.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(default)]
 pub struct GetUpReport {
     /// Share that stands within 5 s, 0 to 1.
     pub success: f32,

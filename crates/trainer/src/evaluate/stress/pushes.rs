@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use glam::Vec3;
 use policy_core::BodyId;
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 use super::bisect::largest;
 use crate::evaluate::Rig;
@@ -23,7 +23,8 @@ const MOST_NEWTON: f32 = 1000.0;
 const CHARACTERS: usize = 16;
 
 /// Largest pushes, newton, by the side that they push to; the character goes forward.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(default)]
 pub struct SidesReport {
     /// From behind.
     pub forward_newton: f32,

@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use policy_core::bindings::{Bindings, Control};
 use policy_core::training::fall_height;
 use policy_core::{Button, Buttons, CharacterPack, GraphPosition, SkillEnd};
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 use crate::Rng;
 use crate::evaluate::Rig;
@@ -58,7 +58,8 @@ impl PadKind {
 }
 
 /// Falls under a pad at random.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(default)]
 pub struct RandomPadReport {
     /// Falls per minute of one character. It gets up by itself.
     pub falls_per_minute: f32,

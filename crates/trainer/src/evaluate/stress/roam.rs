@@ -5,7 +5,7 @@ use std::f32::consts::FRAC_PI_2;
 
 use glam::Vec2;
 use physics_bridge::Model;
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 use crate::Rng;
 use crate::evaluate::Rig;
@@ -21,7 +21,8 @@ const FAR_METRES: f32 = 28.0;
 const STANDING_SECS: f32 = 10.0;
 
 /// Falls of characters that roam.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(default)]
 pub struct FallReport {
     /// Falls per minute of one character.
     pub falls_per_minute: f32,
