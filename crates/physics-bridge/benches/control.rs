@@ -27,7 +27,7 @@ fn command(pack: &CharacterPack, index: usize, tick: usize) -> Command {
     Command { target, goal: Goal::Path { path, coordinate }, ..Command::default() }
 }
 
-/// Starts everything anew and runs a round; `tick` returns the time that the controllers took.
+/// Resets everything and runs a round. `tick` returns the time that the controllers took.
 fn round(
     crowd: &mut Crowd,
     controllers: &mut [Controller],

@@ -1,7 +1,7 @@
 //! The immutable half: an MJCF, compiled and checked, with its skeleton, ground and shapes. Imports neither
 //! characters nor crowds.
 
-pub(crate) mod convert;
+pub(crate) mod file;
 pub(crate) mod ground;
 pub(crate) mod ground_kind;
 pub(crate) mod layout;

@@ -3,7 +3,7 @@
 mod common;
 
 use common::HUMANOID;
-use physics_bridge::Model;
+use physics_bridge::{Character, Model};
 use policy_core::Skeleton;
 use policy_core::training::{Roles, SkeletonBody, SkeletonJoint};
 
@@ -213,8 +213,10 @@ fn sizes_that_exhaust_memory_or_time_never_reach_mujoco() {
             ),
             "copies",
         ),
-        (with_element(&"<geom size='.1'/>".repeat(5000)), "elements"),
-        (with_element("<body><flexcomp name='f' type='grid' count='1000 1000 1000'/></body>"), "elements"),
+        (with_element(&"<site/>".repeat(5000)), "elements"),
+        (with_element(&"<geom size='.1'/>".repeat(1100)), "number"),
+        (with_element("<body><flexcomp name='f' type='grid' count='1000 1000 1000'/></body>"), "flexcomp"),
+        (with_element(&"<body><geom size='.1'/></body>".repeat(600)), "number"),
         (with_section("<custom><numeric name='n' size='1000000000'/></custom>"), "size"),
         (with_section("<size nuserdata='1000000000'/>"), "nuserdata"),
         (with_section("<size nkey='1000000000'/>"), "nkey"),
@@ -238,4 +240,70 @@ fn sensible_sizes_still_load() {
         .unwrap();
     with_element("<replicate count='4' offset='5 0 0'><geom size='.1' pos='50 0 0'/></replicate>").unwrap();
     with_section("<size nkey='2'/>").unwrap();
+}
+
+/// MuJoCo ends the process when its working memory is full, so a model that could fill it is refused.
+#[test]
+fn crowded_models_are_refused_or_run() {
+    let start = std::time::Instant::now();
+    let parts = |count: usize, part: &dyn Fn(usize) -> String| (0..count).map(part).collect::<String>();
+    let ball = "<geom size='.3' conaffinity='1'/>";
+    let hinge = |i: usize| format!("<body name='w{i}'><joint name='j{i}' axis='0 1 0' range='-1 1'/>{ball}");
+    let motors = |count| parts(count, &|i| format!("<position joint='j{i}' kp='5' forcerange='-5 5'/>"));
+    let with = |bodies: &str, motors: &str| {
+        let text = HUMANOID.replacen("<body name=\"head\"", &format!("{bodies}<body name=\"head\""), 1);
+        let text = text.replacen("</actuator>", &format!("{motors}</actuator>"), 1);
+        format!("{}</mujoco>", &text[..text.find("<keyframe>").unwrap()])
+    };
+    let models = [
+        with(&ball.repeat(900), ""),
+        with(&parts(200, &|i| format!("<body name='w{i}'>{ball}{ball}</body>")), ""),
+        with(&parts(200, &|i| hinge(i) + "</body>"), &motors(200)),
+        with(&(parts(80, &hinge) + &"</body>".repeat(80)), &motors(80)),
+        HUMANOID.replacen("<light", &format!("{}<light", format!("<body>{ball}</body>").repeat(490)), 1),
+        HUMANOID.replacen(
+            "<light",
+            &format!("{}<light", format!("<body pos='0 0 .9'>{ball}</body>").repeat(100)),
+            1,
+        ),
+        HUMANOID.replacen("iterations=\"20\"", "iterations=\"1000\" tolerance=\"0\"", 1),
+    ];
+    for memory in ["1M", "4M", "64M"] {
+        for text in &models {
+            let text = text.replacen("memory=\"4M\"", &format!("memory=\"{memory}\""), 1);
+            match Model::from_mjcf(&text) {
+                Ok(model) => {
+                    let mut character = Character::new(&model);
+                    // It may diverge: what counts is that the process lives.
+                    (0..3).for_each(|_| drop(character.step()));
+                }
+                Err(error) => assert_says(&error.to_string(), &["expected"]),
+            }
+        }
+    }
+    assert!(start.elapsed().as_secs() < 60, "{:?}", start.elapsed());
+}
+
+#[test]
+fn messages_are_short_and_plain() {
+    let hostile = [
+        HUMANOID.replacen("<light", &format!("<light \u{1b}[2J{}='1'", "x".repeat(9000)), 1),
+        HUMANOID.replacen("<light", &format!("<{}", "x".repeat(9000)), 1),
+        HUMANOID.replacen("name=\"neck_x\" axis", &format!("name=\"\u{1b}[2J{}\" axis", "x".repeat(9000)), 1),
+        HUMANOID.replacen("angle=\"degree\"", "angle=\"\u{1b}[2Jdegree\"", 1),
+    ];
+    for text in hostile {
+        let message = Model::from_mjcf(&text).unwrap_err().to_string();
+        assert!(message.len() < 1000 && !message.contains(char::is_control), "{message:?}");
+    }
+}
+
+#[test]
+fn causes_are_told_once() {
+    let error = Model::load("/dev/null").unwrap_err();
+    assert_says(&error.to_string(), &["/dev/null"]);
+    let broken = tempfile::NamedTempFile::new().unwrap();
+    std::fs::write(broken.path(), "<mujoco>").unwrap();
+    let error = Model::load(broken.path()).unwrap_err();
+    assert!(std::error::Error::source(&error).is_none(), "the message of {error} holds its cause");
 }

@@ -4,6 +4,7 @@ use mujoco_rs::wrappers::mj_data::MjtWarning;
 use policy_core::BodyId;
 
 use super::replay_file::ReplayFile;
+use crate::description::file::quoted;
 use crate::description::layout::{JointPlace, Layout};
 
 /// What was wrong with the motion after a step. The first seven are MuJoCo's own checks, after each substep;
@@ -125,7 +126,7 @@ pub struct Diverged {
 
 impl Diverged {
     fn details(&self) -> String {
-        let name = |body| &self.replay.skeleton().body(body).name;
+        let name = |body| quoted(&self.replay.skeleton().body(body).name);
         let body = self.body.map_or_else(String::new, |body| format!(", body {}", name(body)));
         let unit = self.cause.unit();
         let excess = self.excess.map_or_else(String::new, |Excess { value, limit }| {

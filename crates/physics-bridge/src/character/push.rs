@@ -54,7 +54,7 @@ pub(super) struct Pushes {
     substeps_left: Vec<u32>,
     /// Newton seconds, for the next substep.
     impulses: Vec<[f32; 3]>,
-    /// True while anything above is to be written to MuJoCo, or to be taken back from it.
+    /// True while a force has to be written to MuJoCo, or a zero after the last one.
     under_way: bool,
 }
 

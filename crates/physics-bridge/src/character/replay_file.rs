@@ -1,27 +1,34 @@
 //! A character in a file: everything needed to continue from the state in it, bit for bit, on the same build
 //! of MuJoCo. Refuses a file in which anything is missing, left over or not finite.
 
-use std::path::{Path, PathBuf};
+mod error;
+
+use std::path::Path;
 use std::sync::Arc;
 
 use mujoco_rs::wrappers::mj_data::MjtState;
 use policy_core::format::{RolesEntry, SkeletonEntry};
-use policy_core::training::{Roles, SkeletonBody, SkeletonError, SkeletonJoint};
+use policy_core::training::{Roles, SkeletonBody, SkeletonJoint};
 use policy_core::{BodyId, Skeleton};
 use serde::{Deserialize, Serialize};
 
 use super::push::Pushes;
-use super::{Character, Snapshot, SnapshotMismatch};
+use super::{Character, Snapshot};
+use crate::description::file::{self, quoted};
 use crate::description::model::{Model, STATE, Source};
-use crate::description::model_error::ModelError;
 use crate::description::settings::Settings;
 use crate::description::terrain::Terrain;
+
+pub use self::error::ReplayFileError;
 
 /// What the files say they are.
 const FORMAT: &str = "policy-space replay";
 
 /// The version that is written, and the only one that is read.
 const VERSION: u32 = 2;
+
+/// Longest file, bytes: an MJCF of the longest, and a state.
+const MOST_BYTES: usize = 16 << 20;
 
 /// MuJoCo resets a simulation in which a number is larger.
 const LARGEST: f64 = 1e10;
@@ -57,81 +64,6 @@ struct File {
     state: String,
 }
 
-/// Why a replay file can't be read, written or run.
-#[derive(Debug, thiserror::Error)]
-#[non_exhaustive]
-pub enum ReplayFileError {
-    /// The file can't be read or written.
-    #[error("cannot access the replay file {}", path.display())]
-    Access {
-        /// The file.
-        path: PathBuf,
-        /// What the system says.
-        source: std::io::Error,
-    },
-    /// The bytes are not the JSON of a replay file.
-    #[error("expected the JSON of a replay file: {source}")]
-    Json {
-        /// What is wrong, with line and column.
-        source: serde_json::Error,
-    },
-    /// Something else, or from another version.
-    #[error("expected {FORMAT:?} of version {VERSION}, found {format:?} of version {version}")]
-    Format {
-        /// What the file says it is.
-        format: String,
-        /// Its version.
-        version: u32,
-    },
-    /// The state is not hexadecimal doubles.
-    #[error("expected 16 hexadecimal digits at character {offset} of state, found something else")]
-    State {
-        /// Where, in characters.
-        offset: usize,
-    },
-    /// A number of the state can't be simulated.
-    #[error("expected a finite number below {LARGEST:e} in size as number {index} of state, found {found}")]
-    Number {
-        /// Which, from 0.
-        index: usize,
-        /// The number.
-        found: f64,
-    },
-    /// A push can't be simulated.
-    #[error("expected a finite force of at most 1 MN for each body in pushes, found others")]
-    Pushes,
-    /// The control rate is none.
-    #[error("expected control_hz from 1 to 1000, found {found}")]
-    ControlRate {
-        /// Control ticks per second.
-        found: f32,
-    },
-    /// The skeleton names a body that it does not have, or is none.
-    #[error("expected a body of the skeleton, found \"{found}\"")]
-    Body {
-        /// Name in the file.
-        found: String,
-    },
-    /// The bodies and hinges make no skeleton.
-    #[error("in the skeleton of the replay file: {source}")]
-    Skeleton {
-        /// What is wrong with it.
-        source: SkeletonError,
-    },
-    /// The model can't be compiled.
-    #[error("in the model of the replay file: {source}")]
-    Model {
-        /// Why.
-        source: ModelError,
-    },
-    /// The state does not belong to the model.
-    #[error("in the state of the replay file: {source}")]
-    Snapshot {
-        /// Why.
-        source: SnapshotMismatch,
-    },
-}
-
 impl ReplayFile {
     pub(super) fn new(model: &Model, snapshot: Snapshot) -> Self {
         let Source { mjcf, control_hz, terrain, .. } = model.source().clone();
@@ -165,10 +97,10 @@ impl ReplayFile {
         };
         let model = Model::compile(source)
             .and_then(|model| model.with_settings(self.settings))
-            .map_err(|source| ReplayFileError::Model { source })?;
+            .map_err(|error| ReplayFileError::Model { error })?;
         self.check_numbers(&model)?;
         let mut character = Character::new(&model);
-        character.restore(&self.snapshot).map_err(|source| ReplayFileError::Snapshot { source })?;
+        character.restore(&self.snapshot).map_err(|error| ReplayFileError::Snapshot { error })?;
         Ok(character)
     }
 
@@ -196,9 +128,10 @@ impl ReplayFile {
     /// When it is not the JSON of a replay file of this version, or a number in it is out of its range.
     /// [`ReplayFile::to_character`] finds out whether the model compiles.
     pub fn from_bytes(bytes: &[u8]) -> Result<Self, ReplayFileError> {
-        let file: File = serde_json::from_slice(bytes).map_err(|source| ReplayFileError::Json { source })?;
+        let file: File = serde_json::from_slice(bytes)
+            .map_err(|error| ReplayFileError::Json { message: quoted(&error.to_string()) })?;
         if file.format != FORMAT || file.version != VERSION {
-            return Err(ReplayFileError::Format { format: file.format, version: file.version });
+            return Err(ReplayFileError::Format { format: quoted(&file.format), version: file.version });
         }
         if !CONTROL_HZ.contains(&file.control_hz) {
             return Err(ReplayFileError::ControlRate { found: file.control_hz });
@@ -229,7 +162,7 @@ impl ReplayFile {
     /// When the system refuses, and as [`ReplayFile::from_bytes`].
     pub fn load(path: impl AsRef<Path>) -> Result<Self, ReplayFileError> {
         let path = path.as_ref();
-        let bytes = std::fs::read(path)
+        let bytes = file::read(path, MOST_BYTES)
             .map_err(|source| ReplayFileError::Access { path: path.to_owned(), source })?;
         Self::from_bytes(&bytes)
     }
@@ -252,7 +185,7 @@ fn skeleton(entry: SkeletonEntry) -> Result<Skeleton, ReplayFileError> {
     let names: Vec<String> = entry.bodies.iter().map(|body| body.name.clone()).collect();
     let body = |name: String| match names.iter().position(|n| *n == name) {
         Some(index) => Ok(BodyId::new(index)),
-        None => Err(ReplayFileError::Body { found: name }),
+        None => Err(ReplayFileError::Body { found: quoted(&name) }),
     };
     let bodies = entry.bodies.into_iter().map(|b| {
         let parent = b.parent.map(body).transpose()?;
@@ -266,7 +199,7 @@ fn skeleton(entry: SkeletonEntry) -> Result<Skeleton, ReplayFileError> {
     let all = |names: Vec<String>| names.into_iter().map(body).collect::<Result<_, _>>();
     let RolesEntry { head, hands, feet } = entry.roles;
     let roles = Roles { head: head.map(body).transpose()?, hands: all(hands)?, feet: all(feet)? };
-    Skeleton::from_parts(bodies, joints, roles).map_err(|source| ReplayFileError::Skeleton { source })
+    Skeleton::from_parts(bodies, joints, roles).map_err(|error| ReplayFileError::Skeleton { error })
 }
 
 fn parse_state(digits: &str) -> Result<Box<[f64]>, ReplayFileError> {

@@ -7,10 +7,9 @@ use policy_core::{BodyId, CharacterState};
 use std::sync::Arc;
 
 use super::{Character, Contact};
-use crate::description::convert::rotation;
 use crate::description::layout::Layout;
 use crate::description::model::Model;
-use crate::description::pose::{BodyPoses, Pose};
+use crate::description::pose::{BodyPoses, Pose, rotation};
 
 impl Character {
     /// Writes what a policy senses: motion of the body frames in world axes, joint velocities, and the

@@ -1,20 +1,34 @@
 //! A control tick of a crowd with policy-core's controllers: sense, prepare, evaluate as a batch, accept, actuate,
-//! step. Characters are taken in parts that one thread runs from beginning to end.
+//! step. One thread takes a part of the crowd up to accept; all threads share the steps. The batch computes a character
+//! in the same way whatever part it is in, so the length of the parts changes no bit.
 
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
-use policy_core::{BatchScratch, Blend, BlendMode, CharacterPack, Command, Controller, evaluate_batch_into};
+use policy_core::{
+    Arithmetic, BatchScratch, Blend, BlendMode, CharacterPack, Command, Controller, evaluate_batch_into,
+};
 use rayon::prelude::*;
 
 use super::{Crowd, Member};
 
-/// Characters that are evaluated together. Parts are this long whatever the number of threads, so that it changes no
-/// bit. A multiple of the batch's block.
-const PART: usize = 24;
+/// Most characters that are evaluated together: as many as share one pass over the parameters.
+const LONGEST_PART: usize = 48;
+
+/// Parts are a multiple of this long, the number of characters that the batch computes side by side.
+const BLOCK: usize = 6;
 
 /// Crowds with fewer characters evaluate each by itself, which is as fast.
 const LEAST_BATCH: usize = 6;
+
+/// What all members of a crowd's batches have in common: the pack and arithmetic of the first controller.
+#[derive(Clone, Debug)]
+struct Shared {
+    pack: Arc<CharacterPack>,
+    arithmetic: Arithmetic,
+    /// False in a small crowd, which has no batch.
+    batched: bool,
+}
 
 /// Room for one part of a crowd.
 #[derive(Debug)]
@@ -35,8 +49,8 @@ impl Crowd {
     ///
     /// In a crowd of at least six, policies are evaluated as a batch. That agrees with one by one to rounding, so a
     /// character of a crowd may leave the track that it would follow alone. A controller with another pack or
-    /// arithmetic than the first of its part, or with [`BlendMode::Actions`], is evaluated by itself. Allocates in the
-    /// first call and after the packs changed.
+    /// arithmetic than the first one, or with [`BlendMode::Actions`], is evaluated by itself. Allocates in the first
+    /// call and after the first controller's pack has changed.
     ///
     /// # Panics
     /// When there are not as many `controllers` or `commands` as characters.
@@ -61,24 +75,35 @@ impl Crowd {
         F: Fn(usize, &mut C) -> (&mut Controller, Command) + Sync,
     {
         assert_eq!(owners.len(), self.members.len(), "one controller for each character");
-        let batched = owners.len() >= LEAST_BATCH;
-        for (part, owners) in owners.chunks_mut(PART).enumerate() {
-            let (first, _) = steering(part * PART, &mut owners[0]);
-            match self.batches.get_mut(part) {
-                Some(batch) if Arc::ptr_eq(&batch.pack, first.pack()) => {}
-                Some(batch) => *batch = Batch::new(first.pack()),
-                None => self.batches.push(Batch::new(first.pack())),
-            }
-        }
+        let Some(first) = owners.first_mut() else { return 0 };
+        let (first, _) = steering(0, first);
+        let shared = Shared {
+            pack: Arc::clone(first.pack()),
+            arithmetic: first.config().arithmetic,
+            batched: self.members.len() >= LEAST_BATCH,
+        };
+        let share = self.members.len().div_ceil(self.threads());
+        let length = share.next_multiple_of(BLOCK).min(LONGEST_PART);
+        self.fit_batches(&shared.pack, self.members.len().div_ceil(length));
         let (members, batches) = (&mut self.members, &mut self.batches);
-        let parts = members.par_chunks_mut(PART).zip(owners.par_chunks_mut(PART)).zip(batches);
+        let parts = members.par_chunks_mut(length).zip(owners.par_chunks_mut(length)).zip(batches);
         self.pool.install(|| {
             let ticked = parts.enumerate().map(|(part, ((members, owners), batch))| {
-                let part = Part { first: part * PART, dt_secs, batched, members, owners };
-                batch.tick(part, &steering)
+                let mut part = Part { first: part * length, dt_secs, shared: &shared, members, owners };
+                batch.control(&mut part, &steering);
+                part.step(&steering)
             });
             ticked.sum()
         })
+    }
+
+    /// Makes room for so many parts. Allocates when there are more than before or the pack is another.
+    fn fit_batches(&mut self, pack: &Arc<CharacterPack>, parts: usize) {
+        self.batches.retain(|batch| Arc::ptr_eq(&batch.pack, pack));
+        self.batches.truncate(parts);
+        while self.batches.len() < parts {
+            self.batches.push(Batch::new(pack));
+        }
     }
 
     /// Time that controllers and policies took in the last control tick, summed over the threads.
@@ -88,14 +113,28 @@ impl Crowd {
     }
 }
 
-/// The characters that one thread takes.
+/// Some of the characters, with what holds their controllers.
 struct Part<'a, C> {
     /// Index of the first.
     first: usize,
     dt_secs: f32,
-    batched: bool,
+    shared: &'a Shared,
     members: &'a mut [Member],
     owners: &'a mut [C],
+}
+
+impl<C: Send> Part<'_, C> {
+    /// Steps every character with its controller's targets. Returns how many diverged.
+    fn step<F>(self, steering: &F) -> usize
+    where
+        F: Fn(usize, &mut C) -> (&mut Controller, Command) + Sync,
+    {
+        let pairs = self.members.par_iter_mut().zip(self.owners).enumerate();
+        let stepped = pairs.map(|(index, (member, owner))| {
+            member.step(steering(self.first + index, owner).0.joint_targets())
+        });
+        stepped.sum()
+    }
 }
 
 impl Batch {
@@ -103,30 +142,25 @@ impl Batch {
         let shape = &pack.policies()[0];
         Self {
             pack: Arc::clone(pack),
-            scratch: BatchScratch::for_mlp(shape, PART),
-            members: Vec::with_capacity(PART),
-            blends: Vec::with_capacity(PART),
-            inputs: Vec::with_capacity(PART * shape.inputs()),
-            actions: vec![0.0; PART * shape.outputs()],
+            scratch: BatchScratch::for_mlp(shape, LONGEST_PART),
+            members: Vec::with_capacity(LONGEST_PART),
+            blends: Vec::with_capacity(LONGEST_PART),
+            inputs: Vec::with_capacity(LONGEST_PART * shape.inputs()),
+            actions: vec![0.0; LONGEST_PART * shape.outputs()],
             time: Duration::ZERO,
         }
     }
 
-    /// A control tick of a part. Returns how many diverged.
-    fn tick<C, F>(&mut self, mut part: Part<'_, C>, steering: &F) -> usize
+    /// Senses every character of a part and makes its joint targets.
+    fn control<C, F>(&mut self, part: &mut Part<'_, C>, steering: &F)
     where
         F: Fn(usize, &mut C) -> (&mut Controller, Command),
     {
         part.members.iter_mut().for_each(|member| member.character.sense());
         let start = Instant::now();
-        self.prepare(&mut part, steering);
-        self.evaluate(&mut part, steering);
+        self.prepare(part, steering);
+        self.evaluate(part, steering);
         self.time = start.elapsed();
-        let pairs = part.members.iter_mut().zip(part.owners).enumerate();
-        let step = |(index, (member, owner)): (usize, (&mut Member, &mut C))| {
-            member.step(steering(part.first + index, owner).0.joint_targets())
-        };
-        pairs.map(step).sum()
     }
 
     /// Prepares every controller and collects those that the batch evaluates. The others complete their tick.
@@ -137,14 +171,13 @@ impl Batch {
         self.members.clear();
         self.blends.clear();
         self.inputs.clear();
-        let mut arithmetic = None;
         for (index, (member, owner)) in part.members.iter().zip(part.owners.iter_mut()).enumerate() {
             let (controller, command) = steering(part.first + index, owner);
             let config = controller.config();
-            let fits = part.batched
-                && Arc::ptr_eq(controller.pack(), &self.pack)
-                && config.blend_mode != BlendMode::Actions
-                && *arithmetic.get_or_insert(config.arithmetic) == config.arithmetic;
+            let fits = part.shared.batched
+                && Arc::ptr_eq(controller.pack(), &part.shared.pack)
+                && config.arithmetic == part.shared.arithmetic
+                && config.blend_mode != BlendMode::Actions;
             let state = member.character.sensed();
             if !fits {
                 controller.tick(state, &command, part.dt_secs);
@@ -161,8 +194,10 @@ impl Batch {
     where
         F: Fn(usize, &mut C) -> (&mut Controller, Command),
     {
-        let Some(&first) = self.members.first() else { return };
-        let arithmetic = steering(part.first + first, &mut part.owners[first]).0.config().arithmetic;
+        if self.members.is_empty() {
+            return;
+        }
+        let arithmetic = part.shared.arithmetic;
         let outputs = self.pack.policies()[0].outputs();
         let actions = &mut self.actions[..self.members.len() * outputs];
         let (policies, scratch) = (self.pack.policies(), &mut self.scratch);

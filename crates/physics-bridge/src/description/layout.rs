@@ -4,6 +4,7 @@
 use mujoco_rs::wrappers::mj_model::{MjModel, MjtBias, MjtGain, MjtObjBase};
 use policy_core::{ActuationContract, BodyId, JointActuation, Skeleton};
 
+use super::file::quoted;
 use super::model_error::ModelError;
 use super::pose::{ROOT_QPOS, ROOT_QVEL};
 use super::skeleton;
@@ -45,7 +46,7 @@ impl Layout {
         expect_count("numbers in qvel", ROOT_QVEL + joints, model.nv())?;
         expect_count("actuator inputs", joints, model.nu())?;
         let body_id = |body: &str| {
-            let missing = || ModelError::Missing { kind: "body", name: body.to_owned() };
+            let missing = || ModelError::Missing { kind: "body", name: quoted(body) };
             model.name_to_id(MjtObjBase::mjOBJ_BODY, body).ok_or_else(missing)
         };
         let body_ids = skeleton.bodies().iter().map(|b| body_id(&b.name)).collect::<Result<Box<[_]>, _>>()?;
@@ -115,13 +116,13 @@ fn expect_count(what: &'static str, expected: usize, found: impl Into<i64>) -> R
 }
 
 fn place(model: &MjModel, name: &str, body: BodyId) -> Result<JointPlace, ModelError> {
-    let missing = |kind| ModelError::Missing { kind, name: name.to_owned() };
+    let missing = |kind| ModelError::Missing { kind, name: quoted(name) };
     let joint = model.name_to_id(MjtObjBase::mjOBJ_JOINT, name).ok_or_else(|| missing("joint"))?;
     let drives = |&actuator: &usize| model.actuator_trnid()[actuator][0] as usize == joint;
     let mut motors = (0..model.nactuator() as usize).filter(drives);
     let actuator = motors.next().ok_or_else(|| missing("motor of the joint"))?;
     let expect = |fits: bool, expected| {
-        let name = name.to_owned();
+        let name = quoted(name);
         if fits { Ok(()) } else { Err(ModelError::Kind { kind: "motor of joint", name, expected }) }
     };
     expect(motors.next().is_none(), "one motor alone")?;

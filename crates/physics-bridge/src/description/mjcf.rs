@@ -1,7 +1,7 @@
 //! Compiles MJCF text, with a height field put in where the terrain asks for one, and says in full what is
 //! wrong with it.
 
-mod limits;
+pub(super) mod limits;
 mod xml;
 
 use std::ffi::{CStr, c_char};
@@ -11,6 +11,7 @@ use mujoco_rs::wrappers::mj_auxiliary::MjVfs;
 use mujoco_rs::wrappers::mj_editing::{MjSpec, SpecItem};
 use mujoco_rs::wrappers::mj_model::{MjModel, MjtGeomBase};
 
+use super::file::quoted;
 use super::logging;
 use super::model_error::ModelError;
 use super::terrain::{Grid, HALF_EXTENT, PLANE_DROP, Terrain};
@@ -83,8 +84,7 @@ fn add_height_field(spec: &mut MjSpec, grid: &Grid) -> Result<(), ModelError> {
 /// The error for text that MuJoCo refused with `error`.
 fn refusal(mjcf: &str, error: &dyn std::error::Error) -> ModelError {
     let message = full_message(mjcf).unwrap_or_else(|| error.to_string());
-    let message = message.split_whitespace().collect::<Vec<_>>().join(" ");
-    ModelError::Mjcf { message }
+    ModelError::Mjcf { message: quoted(&message) }
 }
 
 /// Loads the text again with a larger buffer for the message. `None` when it can't be told.

@@ -4,6 +4,7 @@ use std::path::PathBuf;
 
 use policy_core::training::SkeletonError;
 
+use super::file::quoted;
 use super::pose::PoseError;
 
 /// Why a [`Model`](crate::Model) can't be made of an MJCF.
@@ -19,12 +20,12 @@ pub enum ModelError {
         source: std::io::Error,
     },
     /// The file was read and refused.
-    #[error("{}: {source}", path.display())]
+    #[error("{}: {error}", path.display())]
     File {
         /// The file.
         path: PathBuf,
         /// What is wrong in it.
-        source: Box<ModelError>,
+        error: Box<ModelError>,
     },
     /// The bytes are not text.
     #[error("expected MJCF as UTF-8 text, found an invalid byte at offset {offset}")]
@@ -125,10 +126,10 @@ pub enum ModelError {
         found: usize,
     },
     /// The bodies and hinges make no skeleton.
-    #[error("in the skeleton of the MJCF: {source}")]
+    #[error("in the skeleton of the MJCF: {}", quoted(&error.to_string()))]
     Skeleton {
         /// What is wrong with it.
-        source: SkeletonError,
+        error: SkeletonError,
     },
     /// The time step does not divide a control tick.
     #[error("expected a timestep that divides 1/{control_hz} s, found {timestep_secs} s")]
@@ -155,10 +156,10 @@ pub enum ModelError {
         found: i64,
     },
     /// The keyframe `stand` is no pose.
-    #[error("in the keyframe stand: {source}")]
+    #[error("in the keyframe stand: {error}")]
     Stand {
         /// What is wrong with it.
-        source: PoseError,
+        error: PoseError,
     },
     /// A number of a [`Terrain`](crate::Terrain) is out of its range.
     #[error("expected {field} of the terrain between {least} and {most}, found {found}")]

@@ -63,7 +63,7 @@ impl Settings {
     }
 }
 
-/// Multiplies masses and inertias, and has MuJoCo compute anew what it derived from them.
+/// Multiplies masses and inertias, and lets MuJoCo recompute what follows from them.
 fn with_mass(model: MjModel, factor: f64) -> MjModel {
     let mut data = MjData::new(Box::new(model.clone()));
     // SAFETY: only masses and inertias are written; no size, index or address changes.

@@ -8,6 +8,7 @@ use mujoco_rs::wrappers::mj_model::{MjModel, MjtJoint, MjtObjBase, MjtTrn};
 use policy_core::training::{Roles, SkeletonBody, SkeletonJoint};
 use policy_core::{BodyId, Skeleton};
 
+use super::file::quoted;
 use super::model_error::ModelError;
 
 /// How far an axis or a range of a given skeleton may be from the MJCF's, as a number and in radians.
@@ -43,7 +44,7 @@ pub(super) fn derive(model: &MjModel) -> Result<Skeleton, ModelError> {
     let joints = (0..model.nactuator() as usize).map(|actuator| joint(model, actuator, &ids));
     let joints = joints.collect::<Result<Vec<_>, _>>()?;
     let roles = roles(&bodies);
-    Skeleton::from_parts(bodies, joints, roles).map_err(|source| ModelError::Skeleton { source })
+    Skeleton::from_parts(bodies, joints, roles).map_err(|error| ModelError::Skeleton { error })
 }
 
 /// Checks that `given` says of its bodies and hinges what the MJCF says of those of the same names.
@@ -61,18 +62,18 @@ pub(super) fn check(given: &Arc<Skeleton>, model: &MjModel) -> Result<(), ModelE
         skeleton.parent(body).map(|parent| skeleton.body(parent).name.clone())
     };
     for (index, SkeletonBody { name, .. }) in given.bodies().iter().enumerate() {
-        let missing = || ModelError::Missing { kind: "body", name: name.clone() };
+        let missing = || ModelError::Missing { kind: "body", name: quoted(name) };
         let body = found.body_named(name).ok_or_else(missing)?;
         if parent_name(given, BodyId::new(index)) != parent_name(&found, body) {
             return Err(ModelError::Kind {
                 kind: "body",
-                name: name.clone(),
+                name: quoted(name),
                 expected: "the parent of the skeleton",
             });
         }
     }
     for joint in given.joints() {
-        let missing = || ModelError::Missing { kind: "joint", name: joint.name.clone() };
+        let missing = || ModelError::Missing { kind: "joint", name: quoted(&joint.name) };
         let other = &found.joints()[found.joint_named(&joint.name).ok_or_else(missing)?.index()];
         let close = |a: f32, b: f32| (a - b).abs() <= TOLERANCE;
         let fits = given.body(joint.body).name == found.body(other.body).name
@@ -81,7 +82,7 @@ pub(super) fn check(given: &Arc<Skeleton>, model: &MjModel) -> Result<(), ModelE
             && close(joint.range[1], other.range[1]);
         if !fits {
             let expected = "the body, axis and range of the skeleton";
-            return Err(ModelError::Kind { kind: "joint", name: joint.name.clone(), expected });
+            return Err(ModelError::Kind { kind: "joint", name: quoted(&joint.name), expected });
         }
     }
     Ok(())
@@ -91,7 +92,7 @@ pub(super) fn check(given: &Arc<Skeleton>, model: &MjModel) -> Result<(), ModelE
 fn joint(model: &MjModel, actuator: usize, ids: &[Option<BodyId>]) -> Result<SkeletonJoint, ModelError> {
     let kind = |expected| {
         let name = model.id_to_name(MjtObjBase::mjOBJ_ACTUATOR, actuator);
-        let name = name.map_or_else(|| format!("number {actuator}"), str::to_owned);
+        let name = name.map_or_else(|| format!("number {actuator}"), quoted);
         ModelError::Kind { kind: "actuator", name, expected }
     };
     if model.actuator_trntype()[actuator] != MjtTrn::mjTRN_JOINT {
@@ -102,7 +103,7 @@ fn joint(model: &MjModel, actuator: usize, ids: &[Option<BodyId>]) -> Result<Ske
         ids[model.jnt_bodyid()[joint] as usize].ok_or_else(|| kind("a joint of the body that floats"))?;
     let name = name(model, MjtObjBase::mjOBJ_JOINT, "joint", joint)?;
     let expect = |fits: bool, expected| {
-        let name = name.clone();
+        let name = quoted(&name);
         if fits { Ok(()) } else { Err(ModelError::Kind { kind: "joint", name, expected }) }
     };
     expect(model.jnt_type()[joint] == MjtJoint::mjJNT_HINGE, "a hinge")?;

@@ -5,9 +5,8 @@ use serde::{Deserialize, Serialize};
 
 use super::model_error::ModelError;
 
-/// The ground. Anything but [`Terrain::Flat`] is a square height field of 80 m about the origin, with its
-/// lowest point at z = 0, that comes down to that height at its rim; a plane lies 0.1 m lower beneath it
-/// and goes on without end.
+/// The ground. Anything but [`Terrain::Flat`] is a square height field of 80 m about the origin. Its lowest point is
+/// at z = 0, and it comes down to that height at its rim. An endless plane lies 0.1 m below it.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, rename_all = "snake_case")]
 #[non_exhaustive]

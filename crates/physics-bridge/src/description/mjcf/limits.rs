@@ -1,11 +1,12 @@
 //! Bounds on MJCF from strangers, checked before MuJoCo sees the text: what would read files, exhaust memory or
 //! run for minutes while it is compiled. Refuses with the line. Whether the text is valid MJCF is MuJoCo's to say.
 
+use super::super::file::quoted;
 use super::super::model_error::ModelError;
 use super::xml::{Attributes, Tag, Tags};
 
 /// Longest text, bytes.
-const MOST_BYTES: usize = 4 << 20;
+pub(in crate::description) const MOST_BYTES: usize = 4 << 20;
 
 /// Most elements, copies by `replicate` included.
 const MOST_ELEMENTS: f64 = 4096.0;
@@ -19,8 +20,14 @@ const MOST_MEMORY: f64 = (128 << 20) as f64;
 /// Bytes for each pixel or height of an element. A texture may have six sides.
 const PIXEL_BYTES: &[(&str, f64)] = &[("texture", 24.0), ("hfield", 8.0), ("camera", 64.0)];
 
-/// What a character has no use for: it reads files, loads plug-ins, or runs a simulation while it is compiled.
-const FORBIDDEN: &[&str] = &["include", "plugin", "extension", "muscle", "lengthrange"];
+/// What a character has no use for: it reads files, loads plug-ins, makes many bodies, or runs a simulation while it is
+/// compiled.
+const FORBIDDEN: &[&str] =
+    &["include", "plugin", "extension", "muscle", "lengthrange", "composite", "flexcomp", "flex"];
+
+/// Most elements of a name, copies included. MuJoCo's working memory grows with the square of the bodies, and it ends
+/// the process when that memory is full.
+const MOST_OF: [(&str, f64); 3] = [("body", 512.0), ("joint", 1024.0), ("geom", 1024.0)];
 
 /// Largest number in an attribute that sets a size or a number of rounds. An element `*` is any. An attribute
 /// `*` is any, and then every number in its value is a size.
@@ -83,6 +90,7 @@ pub(super) fn check(mjcf: &str) -> Result<(), ModelError> {
 #[derive(Default)]
 struct Totals {
     elements: f64,
+    of: [f64; MOST_OF.len()],
     bytes: f64,
 }
 
@@ -120,6 +128,10 @@ impl Totals {
         }
         self.elements += copies * counts;
         at_most(line, name, "elements, copies included,", MOST_ELEMENTS, self.elements)?;
+        for ((of, most), total) in MOST_OF.into_iter().zip(&mut self.of) {
+            *total += if name == of { copies } else { 0.0 };
+            at_most(line, name, "number, copies included,", most, *total)?;
+        }
         let bytes = PIXEL_BYTES.iter().find(|(element, _)| *element == name).map_or(0.0, |(_, bytes)| *bytes);
         self.bytes += copies * bytes * pixels;
         at_most(line, name, "bytes of pixels and heights", MOST_MEMORY, self.bytes)?;
@@ -163,9 +175,4 @@ fn at_most(line: usize, element: &str, what: &str, most: f64, found: f64) -> Res
         return Ok(());
     }
     Err(ModelError::Limit { line, element: quoted(element), what: quoted(what), most, found })
-}
-
-/// A name from the text, short enough for a message and without control characters.
-fn quoted(name: &str) -> String {
-    name.chars().take(40).filter(|c| !c.is_control()).collect()
 }
