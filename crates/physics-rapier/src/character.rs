@@ -22,7 +22,7 @@ pub use self::push::PushError;
 pub const WALKING_START_MPS: f32 = 1.2;
 
 /// Why a whole character can't lose a part here: its world is only read from outside.
-const WHOLE: &str = "nobody removes parts of a character in its own world";
+const WHOLE: &str = "the parts of a character stay in its own world";
 
 /// One character. Each control tick calls [`Character::sense_into`], [`Character::actuate`] and
 /// [`Character::step`], or [`Character::control_tick`] for all of them.

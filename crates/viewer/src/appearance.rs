@@ -1,4 +1,4 @@
-//! How the characters of a pack look when nothing else is asked for.
+//! How the characters of a pack look by default.
 
 use physics_bridge::Model;
 use policy_core::CharacterPack;

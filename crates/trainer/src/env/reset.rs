@@ -38,7 +38,7 @@ pub struct ResetConfig {
     /// Share of episodes that start a second or two before an earlier failure of the same character, with the command it had
     /// then: rare failures are met often.
     pub pre_failure_share: f32,
-    /// Episodes, of skills trained together, that start where an episodic skill hands over to a node.
+    /// Joint training only: episodes that start where an episodic skill hands over to a node.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub hand_over: Option<HandOverConfig>,
 }

@@ -39,7 +39,7 @@ pub struct RewardConfig {
     /// Weight of the reward for tracking a clip. Above zero an episode fails when the tracking error exceeds its threshold,
     /// and is truncated at the clip's end. Where skills are trained together, trackers get it beside the other rewards.
     pub tracking_weight: f32,
-    /// Share of episodes, of skills trained together, that start at a node and track the clips of every node that they rest at.
+    /// Joint training only: share of episodes that start at a node and track the clips of each node they rest at.
     pub tracking_share: f32,
     /// Penalty of a failure. What failing forgoes weighs little beside style once falls are a minute apart.
     pub fall_cost: f32,

@@ -20,7 +20,7 @@ const TRAVEL_SECS: f32 = 3.0;
 pub struct Walked {
     /// Falls.
     pub falls: u32,
-    /// Ways up out of where low is right that the skill took which raises fallen characters.
+    /// Rises out of a low gait that the recovery skill took over.
     pub rises: u32,
     /// Minutes measured.
     pub minutes: f32,

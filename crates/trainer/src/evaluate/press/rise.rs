@@ -1,4 +1,4 @@
-//! From a crawl to its feet: the left trigger is let go, the stick stays pushed.
+//! From a crawl to its feet: the left trigger is released, the stick stays pushed.
 
 use serde::{Deserialize, Serialize};
 

@@ -1,4 +1,4 @@
-//! Stops: how long and how far the character goes on after the stick is let go.
+//! Stops: how long and how far the character goes on after the stick is released.
 
 use serde::{Deserialize, Serialize};
 
@@ -27,7 +27,7 @@ pub struct StopReport {
     pub m: Option<f32>,
     /// Stops that do not come within 12 s.
     pub never: usize,
-    /// Median of the speed at the end of each stop, or 12 s after the stick was let go, metres per second.
+    /// Median of the speed at the end of each stop, or 12 s after the stick was released, metres per second.
     pub last_mps: Option<f32>,
     /// Stops tried.
     pub trials: usize,
@@ -44,7 +44,7 @@ struct Stop {
     fell: bool,
 }
 
-/// Stops of each of the settled characters of a gait. The stick is let go; triggers and buttons stay held, so a crouch stops in a
+/// Stops of each of the settled characters of a gait. The stick is released; triggers and buttons stay held, so a crouch stops in a
 /// crouch.
 #[must_use]
 pub fn measure_stops(rig: &Rig<'_>, settled: &[Settled]) -> StopReport {

@@ -153,7 +153,7 @@ fn is_low(pack: &CharacterPack, position: GraphPosition, pelvis_height: f32) -> 
     fall_height(pack.graph(), position).is_some_and(|limit| pelvis_height < limit + 0.05)
 }
 
-/// True on the way from where low is right.
+/// True on the way out of a low gait.
 fn is_rising(pack: &CharacterPack, from: GraphPosition, to: GraphPosition) -> bool {
     match (fall_height(pack.graph(), from), fall_height(pack.graph(), to)) {
         (Some(from), Some(to)) => from < to,
