@@ -15,7 +15,7 @@ mod pickle_machine;
 
 pub use error::ClipError;
 pub use fit::JointFit;
-pub use folder::{ClipFolder, MOTIONS_VARIABLE, load_file};
+pub use folder::{ClipFolder, MOTIONS_VARIABLE, from_bytes, load_file};
 pub use motion::{MOTION_HZ, Motion, TICK_STRIDE, placed};
 
 use std::sync::Arc;
