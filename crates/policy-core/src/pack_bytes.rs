@@ -10,7 +10,7 @@ use safetensors::tensor::{Dtype, SafeTensors, TensorView};
 use serde::Deserialize;
 
 use crate::excerpt::excerpt;
-use crate::format::{Manifest, PACK_VERSION, Storage};
+use crate::format::{MAX_HEADER_BYTES, MAX_PACK_BYTES, Manifest, PACK_VERSION, Storage};
 use crate::format_one::{self, ManifestOne};
 use crate::mlp::{Layer, MAX_LAYERS, Mlp};
 use crate::normaliser::Normaliser;
@@ -38,6 +38,7 @@ impl CharacterPack {
     /// When the bytes are no pack, are damaged, or anything in them is not as it must be; see [`PackError`].
     pub fn from_bytes(bytes: &[u8]) -> Result<Self, PackError> {
         let container = |e: safetensors::SafeTensorError| PackError::Container { found: excerpt(e) };
+        check_sizes(bytes)?;
         let (header_len, metadata) = SafeTensors::read_metadata(bytes).map_err(container)?;
         let json = metadata.metadata().as_ref().and_then(|m| m.get(MANIFEST_KEY));
         let manifest = manifest(json.ok_or(PackError::NoManifest)?)?;
@@ -103,6 +104,20 @@ impl CharacterPack {
         let mut bytes = list.serialised(json);
         write_checksum(&mut bytes);
         bytes
+    }
+}
+
+/// Bounds the file and its header before anything is allocated for them.
+fn check_sizes(bytes: &[u8]) -> Result<(), PackError> {
+    let header = bytes.first_chunk().map_or(0, |length| u64::from_le_bytes(*length));
+    let sizes = [
+        ("bytes", bytes.len() as u64, MAX_PACK_BYTES),
+        // A length that no file has room for is the container's fault.
+        ("bytes in the header", header.min(bytes.len() as u64), MAX_HEADER_BYTES),
+    ];
+    match sizes.into_iter().find(|&(_, found, most)| found > most as u64) {
+        Some((what, found, most)) => Err(PackError::TooMany { what, most, found: found as usize }),
+        None => Ok(()),
     }
 }
 
@@ -238,7 +253,7 @@ impl Reader<'_> {
         storage: Storage,
     ) -> Result<Mlp, PackError> {
         if !(2..=MAX_LAYERS + 1).contains(&layers.len()) {
-            let expected = format!("of 1 to {MAX_LAYERS} layers");
+            let expected = format!("2 to {} numbers", MAX_LAYERS + 1);
             return Err(PackError::Layers { name: name.into(), expected, found: layers.into() });
         }
         let network = |source| PackError::Network { name: name.into(), source };
