@@ -61,6 +61,7 @@ impl Clip {
             }
         }
         for frame in 0..frames {
+            // All lists have as many frames as there are times.
             let (expected, found) = (self.bodies.len(), self.local_rotations[frame].len());
             if found != expected || found == 0 {
                 return Err(ClipError::Lengths {
@@ -99,6 +100,7 @@ impl Clip {
     /// Seconds from the first to the last frame.
     #[must_use]
     pub fn duration(&self) -> f32 {
+        // A clip that was checked has two frames or more, here and below.
         self.times[self.times.len() - 1]
     }
 
