@@ -153,6 +153,7 @@ fn checksum_digits(bytes: &[u8], header_len: usize) -> Option<core::ops::Range<u
 fn checksum(bytes: &[u8], header_len: usize) -> Option<String> {
     let digits = checksum_digits(bytes, header_len)?;
     let mut crc = crc32fast::Hasher::new();
+    // The digits were found inside the file.
     crc.update(&bytes[..digits.start]);
     crc.update(NO_CHECKSUM.as_bytes());
     crc.update(&bytes[digits.end..]);
@@ -260,6 +261,7 @@ impl Reader<'_> {
         let mut made = Vec::with_capacity(layers.len() - 1);
         for (i, ends) in layers.windows(2).enumerate() {
             let weight = self.numbers(tensor_name(kind, name, i, "weight"), Some(ends), storage)?;
+            // `windows(2)` gives pairs.
             let bias = self.numbers(tensor_name(kind, name, i, "bias"), Some(&ends[1..]), storage)?;
             made.push(Layer::from_input_major(ends[0], ends[1], &weight, &bias).map_err(network)?);
         }
