@@ -173,3 +173,18 @@ fn shown(widths: &[usize]) -> String {
         _ => alloc::format!("{widths:?}"),
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use alloc::string::ToString;
+
+    use super::*;
+
+    #[test]
+    fn many_widths_are_not_all_told() {
+        let error = |found| PackError::Layers { name: "a".into(), expected: "2 to 5 numbers".into(), found };
+        let long = error(alloc::vec![7; 100_000]).to_string();
+        assert!(long.len() < 150 && long.contains("100000 widths, the first [7, 7,"), "{long}");
+        assert!(error(alloc::vec![3, 4]).to_string().ends_with("to be 2 to 5 numbers, found [3, 4]"));
+    }
+}
