@@ -12,9 +12,7 @@
 //!
 //! # let root = concat!(env!("CARGO_MANIFEST_DIR"), "/../../assets");
 //! # let pack = CharacterPack::from_bytes(&std::fs::read(format!("{root}/humanoid.pack.safetensors"))?)?;
-//! # let mjcf = std::fs::read_to_string(format!("{root}/humanoid.xml"))?;
-//! // `Model::for_pack(&pack)` suffices when the pack holds its MJCF.
-//! let model = Model::from_mjcf_with_skeleton(&mjcf, pack.skeleton().clone())?;
+//! let model = Model::for_pack(&pack)?;
 //! let walk = pack.graph().node_named("walk").expect("the humanoid walks");
 //! let mut controller = Controller::new(Arc::new(pack));
 //! let mut character = Character::new(&model);
