@@ -1,14 +1,17 @@
-//! Position and velocity of a whole character, laid out as MuJoCo does.
+//! Position and velocity of a whole character: what it is reset to.
 
-use policy_core::Skeleton;
+use alloc::vec;
+use alloc::vec::Vec;
 
-/// Numbers of the root in `qpos`: position and quaternion.
-pub(crate) const ROOT_QPOS: usize = 7;
+use crate::skeleton::Skeleton;
 
-/// Numbers of the root in `qvel`: linear and angular velocity.
-pub(crate) const ROOT_QVEL: usize = 6;
+/// Numbers of the root in [`Pose::qpos`]: position (3) and rotation (4, wxyz).
+pub const ROOT_QPOS: usize = 7;
 
-/// Position and velocity of a character in MuJoCo's terms, hinges in the order of the skeleton.
+/// Numbers of the root in [`Pose::qvel`]: linear velocity (3) and angular velocity (3).
+pub const ROOT_QVEL: usize = 6;
+
+/// Position and velocity of a whole character, laid out as MuJoCo does, hinges in the order of the skeleton.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Pose {
     /// Position (3, metres) and rotation (4, wxyz quaternion) of the root's frame, then the hinges, radians.
@@ -60,8 +63,11 @@ impl Pose {
         Self { qpos, qvel: vec![0.0; ROOT_QVEL + joints] }
     }
 
-    /// Refuses what does not fit a character of so many hinges.
-    pub(crate) fn check(qpos: &[f64], qvel: &[f64], joints: usize) -> Result<(), PoseError> {
+    /// Checks a pose for a character of so many joints.
+    ///
+    /// # Errors
+    /// When a length does not fit, a number is not finite, or the quaternion's length is off by more than 0.001.
+    pub fn check(qpos: &[f64], qvel: &[f64], joints: usize) -> Result<(), PoseError> {
         for (field, numbers, root) in [("qpos", qpos, ROOT_QPOS), ("qvel", qvel, ROOT_QVEL)] {
             let (expected, found) = (root + joints, numbers.len());
             if found != expected {
@@ -71,10 +77,35 @@ impl Pose {
                 return Err(PoseError::NotFinite { field, index, found: numbers[index] });
             }
         }
-        let length = qpos[3..7].iter().map(|v| v * v).sum::<f64>().sqrt();
-        if (length - 1.0).abs() > 1e-3 {
+        let length = libm::sqrt(qpos[3..7].iter().map(|v| v * v).sum::<f64>());
+        if libm::fabs(length - 1.0) > 1e-3 {
             return Err(PoseError::Quaternion { length });
         }
         Ok(())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_new_pose_is_sound_and_broken_ones_are_refused() {
+        let skeleton = Skeleton::humanoid();
+        let joints = skeleton.joint_count();
+        let Pose { qpos, qvel } = Pose::new(&skeleton);
+        assert_eq!(Pose::check(&qpos, &qvel, joints), Ok(()));
+        let short = Pose::check(&qpos[1..], &qvel, joints);
+        assert_eq!(short, Err(PoseError::Length { field: "qpos", expected: 35, found: 34 }));
+        let mut broken = qvel.clone();
+        broken[8] = f64::INFINITY;
+        let found = f64::INFINITY;
+        assert_eq!(
+            Pose::check(&qpos, &broken, joints),
+            Err(PoseError::NotFinite { field: "qvel", index: 8, found })
+        );
+        let mut long = qpos;
+        long[4] = 0.1;
+        assert!(matches!(Pose::check(&long, &qvel, joints), Err(PoseError::Quaternion { .. })));
     }
 }
