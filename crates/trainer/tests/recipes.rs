@@ -3,10 +3,10 @@
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
+use clips::ClipFolder;
 use physics_bridge::Model;
 use policy_core::{Arithmetic, CharacterPack, MlpScratch, Skeleton};
 use trainer::checkpoint::Checkpoint;
-use trainer::clip::ClipFolder;
 use trainer::env::Normalisers;
 use trainer::nn::{Network, Pass};
 use trainer::pack::{PackPlan, TrainedSkill, bind};
