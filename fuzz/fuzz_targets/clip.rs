@@ -4,7 +4,7 @@
 use std::path::Path;
 
 use libfuzzer_sys::fuzz_target;
-use trainer::clip::from_bytes;
+use clips::from_bytes;
 
 fuzz_target!(|bytes: &[u8]| {
     for file in ["fuzz.json", "fuzz.txt", "fuzz.npy"] {
