@@ -5,6 +5,7 @@ pub(crate) mod compare;
 pub(crate) mod evaluate;
 pub(crate) mod interrupt;
 pub(crate) mod keep;
+pub(crate) mod load;
 pub(crate) mod normaliser;
 pub(crate) mod output;
 pub(crate) mod pack;
