@@ -3,6 +3,7 @@
 //! Depends on nothing that links libmujoco, because it has to run before libmujoco is there.
 
 mod bench;
+mod capi;
 mod checks;
 mod demo;
 mod fuzz;
@@ -51,6 +52,8 @@ enum Verb {
     ///
     /// Installs the pinned cargo-deny in third_party/tools first; this takes about two minutes, once.
     Deny,
+    /// Build the C interface and install header, libraries and pkg-config file.
+    Capi(capi::CapiArgs),
     /// Measure, and print a table or one JSON object.
     Bench(bench::BenchArgs),
     /// Feed random bytes to the parsers. Needs a nightly toolchain and cargo-fuzz.
@@ -120,6 +123,11 @@ fn dispatch(verb: Verb) -> Result<ExitCode> {
         Verb::Imports => checks::imports::check(&workspace)?,
         Verb::Words => checks::words::check(&workspace)?,
         Verb::Deny => return Ok(checks::run(&workspace, checks::DENY, false)),
+        Verb::Capi(arguments) if arguments.check => {
+            setup::prepare(&workspace, Purpose::Tests, false)?;
+            return Ok(checks::run(&workspace, checks::C_INTERFACE, false));
+        }
+        Verb::Capi(arguments) => capi::run(&workspace, &arguments)?,
         Verb::Bench(arguments) => bench::run(&workspace, &arguments)?,
         Verb::Fuzz(arguments) => fuzz::run(&workspace, &arguments)?,
         Verb::Hostile(arguments) => hostile::run(&workspace, &arguments)?,

@@ -32,6 +32,7 @@ const RULES: &[Rule] = &[
     rule("gamepad", &["policy-core"], &[]),
     rule("physics-bridge", &["policy-core"], &[]),
     rule("physics-rapier", &["policy-core"], &[]),
+    rule("policy-capi", &["policy-core"], &[]),
     rule("trainer", &["policy-core", "physics-bridge"], &[]),
     rule("viewer", &["policy-core", "physics-bridge", "gamepad"], &[]),
     rule("bevy-plugin", &["policy-core"], &["physics-bridge"]),
