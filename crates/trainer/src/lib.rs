@@ -11,6 +11,7 @@ pub mod limp;
 pub mod lineage;
 pub mod nn;
 pub mod normaliser_file;
+pub mod onnx;
 pub mod pack;
 mod parts;
 pub mod pca;
