@@ -8,6 +8,7 @@ mod checks;
 mod demo;
 mod fuzz;
 mod hostile;
+mod onnx;
 mod setup;
 mod workspace;
 
@@ -56,6 +57,10 @@ enum Verb {
     Capi(capi::CapiArgs),
     /// Measure, and print a table or one JSON object.
     Bench(bench::BenchArgs),
+    /// Export the shipped pack as ONNX models and compare ONNX Runtime and tract with policy-core.
+    ///
+    /// ONNX Runtime comes from its Python wheel, pinned by hash. tract takes some minutes to compile.
+    Onnx,
     /// Feed random bytes to the parsers. Needs a nightly toolchain and cargo-fuzz.
     Fuzz(fuzz::FuzzArgs),
     /// Give broken files to every reader, and report panics, aborts, hangs and too much memory.
@@ -129,6 +134,10 @@ fn dispatch(verb: Verb) -> Result<ExitCode> {
         }
         Verb::Capi(arguments) => capi::run(&workspace, &arguments)?,
         Verb::Bench(arguments) => bench::run(&workspace, &arguments)?,
+        Verb::Onnx => {
+            setup::prepare(&workspace, Purpose::Demo, true)?;
+            onnx::run(&workspace)?;
+        }
         Verb::Fuzz(arguments) => fuzz::run(&workspace, &arguments)?,
         Verb::Hostile(arguments) => hostile::run(&workspace, &arguments)?,
         Verb::Pad { arguments } => {

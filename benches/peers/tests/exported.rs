@@ -28,7 +28,8 @@ fn onnx_runtime_and_tract_agree_with_the_core() {
     let variable = |name| std::env::var_os(name).expect("set by `cargo xtask onnx`");
     let (pack, folder) = (variable("POLICY_SPACE_PACK"), PathBuf::from(variable("POLICY_SPACE_ONNX")));
     let pack = CharacterPack::from_bytes(&std::fs::read(pack).unwrap()).unwrap();
-    let environment = ort::init_from(variable("ORT_DYLIB_PATH")).unwrap().with_telemetry(false).build().unwrap();
+    let environment =
+        ort::init_from(variable("ORT_DYLIB_PATH")).unwrap().with_telemetry(false).build().unwrap();
     for case in cases(&pack, &folder) {
         let mut session = Session::builder(&environment).unwrap().commit_from_file(&case.file).unwrap();
         let differences = [onnx_runtime(&mut session, &case), tract(&case)].map(|found| worst(&case, &found));
@@ -64,9 +65,8 @@ fn tract(case: &Case) -> Vec<f32> {
     for (index, (shape, _)) in case.inputs.iter().enumerate() {
         model = model.with_input_fact(index, f32::fact(shape).into()).unwrap();
     }
-    let inputs = case.inputs.iter().map(|(shape, numbers)| {
-        Tensor::from_shape(shape, numbers).unwrap().into()
-    });
+    let inputs =
+        case.inputs.iter().map(|(shape, numbers)| Tensor::from_shape(shape, numbers).unwrap().into());
     let plan = model.into_optimized().unwrap().into_runnable().unwrap();
     let outputs = plan.spawn().unwrap().run(inputs.collect()).unwrap();
     outputs[0].try_as_plain_ram().unwrap().as_slice::<f32>().unwrap().to_vec()
