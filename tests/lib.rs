@@ -1,4 +1,4 @@
-//! Shared helpers of the workspace's integration tests.
+//! Shared helpers of the workspace's integration tests. The README's Rust code is a test of this crate.
 
 pub mod golden;
 pub mod made_up;
@@ -6,6 +6,11 @@ pub mod made_up;
 use std::sync::Arc;
 
 use policy_core::CharacterPack;
+
+/// The README, so that its code is compiled.
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+pub struct Readme;
 
 /// The character of this project.
 pub const HUMANOID_MJCF: &str = include_str!("../assets/humanoid.xml");

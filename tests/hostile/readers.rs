@@ -230,5 +230,5 @@ fn normalisers(path: &Path) -> Result<(), String> {
 }
 
 fn clip(path: &Path) -> Result<(), String> {
-    trainer::clip::load_file(path).map(drop).map_err(told)
+    clips::load_file(path).map(drop).map_err(told)
 }

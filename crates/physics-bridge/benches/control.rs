@@ -70,8 +70,7 @@ fn median(mut values: Vec<f64>) -> f64 {
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     let pack = CharacterPack::from_bytes(&std::fs::read(format!("{ASSETS}/humanoid.pack.safetensors"))?)?;
-    let mjcf = std::fs::read_to_string(format!("{ASSETS}/humanoid.xml"))?;
-    let model = Model::from_mjcf_with_skeleton(&mjcf, Arc::clone(pack.skeleton()))?;
+    let model = Model::for_pack(&pack)?;
     let threads = std::thread::available_parallelism().ok();
     let mut crowd = Crowd::new((0..CHARACTERS).map(|_| Character::new(&model)).collect(), threads)?;
     let mut controllers = vec![Controller::new(Arc::new(pack)); CHARACTERS];

@@ -16,8 +16,7 @@ const TICKS: u32 = 150;
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     let pack =
         Arc::new(CharacterPack::from_bytes(&std::fs::read(format!("{ASSETS}/humanoid.pack.safetensors"))?)?);
-    let mjcf = std::fs::read_to_string(format!("{ASSETS}/humanoid.xml"))?;
-    let model = Model::from_mjcf_with_skeleton(&mjcf, pack.skeleton().clone())?;
+    let model = Model::for_pack(&pack)?;
     let speed = pack.graph().path_named("speed").ok_or("expected a path named speed")?;
 
     let mut characters = Vec::new();

@@ -13,8 +13,7 @@ const ASSETS: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../assets");
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     let pack =
         Arc::new(CharacterPack::from_bytes(&std::fs::read(format!("{ASSETS}/humanoid.pack.safetensors"))?)?);
-    let mjcf = std::fs::read_to_string(format!("{ASSETS}/humanoid.xml"))?;
-    let model = Model::from_mjcf_with_skeleton(&mjcf, pack.skeleton().clone())?;
+    let model = Model::for_pack(&pack)?;
     let goal = Goal::Node(pack.graph().node_named("walk").ok_or("expected a node named walk")?);
     let torso = model.skeleton().body_named("torso").ok_or("expected a body named torso")?;
     let command = Command { target: Some(Vec2::new(30.0, 0.0)), goal, ..Command::default() };

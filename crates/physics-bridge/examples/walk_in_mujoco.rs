@@ -13,14 +13,7 @@ const ASSETS: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../assets");
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     let pack =
         Arc::new(CharacterPack::from_bytes(&std::fs::read(format!("{ASSETS}/humanoid.pack.safetensors"))?)?);
-    // A pack of version 2 brings its body along; older ones need the MJCF beside them.
-    let model = match pack.mjcf() {
-        Some(_) => Model::for_pack(&pack)?,
-        None => {
-            let mjcf = std::fs::read_to_string(format!("{ASSETS}/humanoid.xml"))?;
-            Model::from_mjcf_with_skeleton(&mjcf, pack.skeleton().clone())?
-        }
-    };
+    let model = Model::for_pack(&pack)?;
     let speed = pack.graph().path_named("speed").ok_or("expected a path named speed")?;
     let mut character = Character::new(&model);
     let mut controller = Controller::new(pack);

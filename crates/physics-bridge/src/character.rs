@@ -25,10 +25,8 @@ use crate::description::model::Model;
 pub use self::contact::Contact;
 pub use self::diverged::{Cause, Diverged, Excess};
 pub use self::history::{HISTORY_SECS, NotRecorded};
-pub use self::plausibility::{MAX_DEPTH_M, MAX_DISTANCE_M, MAX_SPEED_MPS, MAX_SPIN_RADPS};
-pub use self::push::{MAX_PUSHED_MPS, PushError};
 pub use self::replay_file::{ReplayFile, ReplayFileError};
-pub use self::reset::{ModelMismatch, WALKING_START_MPS};
+pub use self::reset::ModelMismatch;
 pub use self::snapshot::{Snapshot, SnapshotMismatch, StateHash};
 
 /// One character. Each control tick calls [`Character::sense_into`], [`Character::actuate`] and
@@ -106,7 +104,7 @@ impl Character {
     ///
     /// # Errors
     /// When MuJoCo warns of anything, or a body ends the tick beyond a limit of plausible motion
-    /// ([`MAX_SPEED_MPS`] and the others). The character is then back in its state before the tick, and the error
+    /// ([`MAX_SPEED_MPS`](crate::MAX_SPEED_MPS) and the others). The character is then back in its state before the tick, and the error
     /// carries that state, to be saved and replayed.
     pub fn step(&mut self) -> Result<(), Diverged> {
         self.before.record(&self.data, self.tick, &self.pushes);

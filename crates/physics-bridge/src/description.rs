@@ -1,6 +1,7 @@
 //! The immutable half: an MJCF, compiled and checked, with its skeleton, ground and shapes. Imports neither
 //! characters nor crowds.
 
+pub(crate) mod body_poses;
 pub(crate) mod file;
 pub(crate) mod ground;
 pub(crate) mod ground_kind;
@@ -9,7 +10,6 @@ mod logging;
 mod mjcf;
 pub(crate) mod model;
 pub(crate) mod model_error;
-pub(crate) mod pose;
 pub(crate) mod settings;
 pub(crate) mod shape;
 mod skeleton;

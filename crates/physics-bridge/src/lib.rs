@@ -12,9 +12,7 @@
 //!
 //! # let root = concat!(env!("CARGO_MANIFEST_DIR"), "/../../assets");
 //! # let pack = CharacterPack::from_bytes(&std::fs::read(format!("{root}/humanoid.pack.safetensors"))?)?;
-//! # let mjcf = std::fs::read_to_string(format!("{root}/humanoid.xml"))?;
-//! // `Model::for_pack(&pack)` suffices when the pack holds its MJCF.
-//! let model = Model::from_mjcf_with_skeleton(&mjcf, pack.skeleton().clone())?;
+//! let model = Model::for_pack(&pack)?;
 //! let walk = pack.graph().node_named("walk").expect("the humanoid walks");
 //! let mut controller = Controller::new(Arc::new(pack));
 //! let mut character = Character::new(&model);
@@ -42,16 +40,20 @@ mod crowd;
 mod description;
 
 pub use character::{
-    Cause, Character, Contact, Diverged, Excess, HISTORY_SECS, MAX_DEPTH_M, MAX_DISTANCE_M, MAX_PUSHED_MPS,
-    MAX_SPEED_MPS, MAX_SPIN_RADPS, ModelMismatch, NotRecorded, PushError, ReplayFile, ReplayFileError,
-    Snapshot, SnapshotMismatch, StateHash, WALKING_START_MPS,
+    Cause, Character, Contact, Diverged, Excess, HISTORY_SECS, ModelMismatch, NotRecorded, ReplayFile,
+    ReplayFileError, Snapshot, SnapshotMismatch, StateHash,
 };
 pub use crowd::{Crowd, CrowdError};
+pub use description::body_poses::BodyPoses;
 pub use description::ground::HeightField;
 pub use description::ground_kind::GroundKind;
-pub use description::model::{CONTROL_HZ, Model};
+pub use description::model::Model;
 pub use description::model_error::ModelError;
-pub use description::pose::{BodyPoses, Pose, PoseError};
 pub use description::settings::Settings;
 pub use description::shape::{Shape, ShapeKind};
 pub use description::terrain::Terrain;
+/// What policy-core says of every physics of a character.
+pub use policy_core::contract::{
+    CONTROL_HZ, MAX_DEPTH_M, MAX_DISTANCE_M, MAX_PUSHED_MPS, MAX_SPEED_MPS, MAX_SPIN_RADPS, Pose, PoseError,
+    PushError, WALKING_START_MPS,
+};

@@ -16,14 +16,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let words: Vec<String> = std::env::args().skip(1).collect();
     let drive = if words.iter().any(|word| word == "motors") { Drive::Motors } else { Drive::Torques };
     let pack = CharacterPack::from_bytes(&std::fs::read(format!("{ASSETS}/humanoid.pack.safetensors"))?)?;
-    let model = match pack.mjcf() {
-        Some(_) => Model::for_pack(&pack)?,
-        // A pack of version 1 has no body inside.
-        None => {
-            let mjcf = std::fs::read_to_string(format!("{ASSETS}/humanoid.xml"))?;
-            Model::from_mjcf_with_skeleton(&mjcf, pack.skeleton().clone())?
-        }
-    };
+    let model = Model::for_pack(&pack)?;
     let pack = Arc::new(pack);
     let node = words.iter().find_map(|word| pack.graph().node_named(word));
     let walk = node.or(pack.graph().node_named("walk")).ok_or("expected a node walk")?;

@@ -4,22 +4,18 @@ mod diverged;
 mod ground;
 mod push;
 
+use policy_core::contract::{Pose, PoseError};
 use policy_core::{BodyId, CharacterState, Command, Controller, Heading};
 use rapier3d::math::Vector;
 use rapier3d::pipeline::PhysicsWorld;
 
 use crate::articulation::{Articulation, Drive, PlaceError, Sets};
 use crate::model::Model;
-use crate::pose::{Pose, PoseError};
 
 use self::ground::{height_at, motor_steps, world};
 use self::push::Pushes;
 
-pub use self::diverged::{Cause, Diverged, MAX_DEPTH_M, MAX_DISTANCE_M, MAX_SPEED_MPS, MAX_SPIN_RADPS};
-pub use self::push::PushError;
-
-/// Speed at which the humanoid's policy that only walks can start, metres per second.
-pub const WALKING_START_MPS: f32 = 1.2;
+pub use self::diverged::{Cause, Diverged};
 
 /// Why a whole character can't lose a part here: its world is only read from outside.
 const WHOLE: &str = "the parts of a character stay in its own world";
@@ -132,7 +128,7 @@ impl Character {
     /// Runs one control tick of physics. Allocates nothing but what Rapier does.
     ///
     /// # Errors
-    /// When a body ends the tick beyond a limit of plausible motion ([`MAX_SPEED_MPS`] and the others). The
+    /// When a body ends the tick beyond a limit of plausible motion ([`MAX_SPEED_MPS`](crate::MAX_SPEED_MPS) and the others). The
     /// character is then back in its pose before the tick, and a caller must reset it or it diverges again.
     pub fn step(&mut self) -> Result<(), Diverged> {
         let (world, articulation) = (&mut self.world, &mut self.articulation);
@@ -194,7 +190,7 @@ impl Character {
 
     /// Stands the character on the ground at a point, metres, world space, facing along `heading`, its lowest
     /// point touching the ground. All of it moves along `heading` at `speed_mps`: 0 for a policy that stands,
-    /// [`WALKING_START_MPS`] for one that only walks and would fall from a standstill. Allocates.
+    /// [`WALKING_START_MPS`](crate::WALKING_START_MPS) for one that only walks and would fall from a standstill. Allocates.
     ///
     /// # Errors
     /// When a number is not finite; the character is then unchanged.

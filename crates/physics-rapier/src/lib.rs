@@ -12,9 +12,7 @@
 //!
 //! # let root = concat!(env!("CARGO_MANIFEST_DIR"), "/../../assets");
 //! # let pack = CharacterPack::from_bytes(&std::fs::read(format!("{root}/humanoid.pack.safetensors"))?)?;
-//! # let mjcf = std::fs::read_to_string(format!("{root}/humanoid.xml"))?;
-//! // `Model::for_pack(&pack)` suffices when the pack holds its MJCF.
-//! let model = Model::from_mjcf_with_skeleton(&mjcf, pack.skeleton().clone())?;
+//! let model = Model::for_pack(&pack)?;
 //! let mut controller = Controller::new(Arc::new(pack));
 //! let mut character = Character::new(&model);
 //! for _ in 0..10 {
@@ -54,16 +52,16 @@ mod convert;
 mod mjcf;
 mod model;
 mod model_error;
-mod pose;
 mod skeleton;
 
 pub use articulation::{Articulation, Drive, PlaceError, Removed, Sets};
-pub use character::{
-    Cause, Character, Diverged, MAX_DEPTH_M, MAX_DISTANCE_M, MAX_SPEED_MPS, MAX_SPIN_RADPS, PushError,
+pub use character::{Cause, Character, Diverged};
+pub use model::Model;
+pub use model_error::ModelError;
+/// What policy-core says of every physics of a character.
+pub use policy_core::contract::{
+    CONTROL_HZ, MAX_DEPTH_M, MAX_DISTANCE_M, MAX_SPEED_MPS, MAX_SPIN_RADPS, Pose, PoseError, PushError,
     WALKING_START_MPS,
 };
-pub use model::{CONTROL_HZ, Model};
-pub use model_error::ModelError;
-pub use pose::{Pose, PoseError};
 /// Rapier as this crate uses it.
 pub use rapier3d;

@@ -4,6 +4,7 @@ mod actuation;
 
 use std::sync::Arc;
 
+use policy_core::contract::{CONTROL_HZ, Pose};
 use policy_core::{ActuationContract, CharacterPack, JointActuation, Skeleton};
 use rapier3d::dynamics::{JointAxesMask, MassProperties, SpringCoefficients};
 use rapier3d::geometry::{Collider, ColliderSet};
@@ -11,12 +12,8 @@ use rapier3d::math::Vector;
 use rapier3d_mjcf::MjcfRobot;
 
 use crate::model_error::ModelError;
-use crate::pose::Pose;
 use crate::skeleton::Places;
 use crate::{mjcf, skeleton};
-
-/// Control ticks per second, unless a pack says otherwise.
-pub const CONTROL_HZ: u32 = 30;
 
 /// Joint limits about as soft as MuJoCo's default ones; the loader ignores `solreflimit`, and Rapier's default is all but
 /// rigid.

@@ -1,8 +1,7 @@
 //! Why a model can't be made.
 
+use policy_core::contract::PoseError;
 use policy_core::training::SkeletonError;
-
-use crate::pose::PoseError;
 
 /// Why a [`Model`](crate::Model) can't be made of an MJCF.
 #[derive(Debug, thiserror::Error)]

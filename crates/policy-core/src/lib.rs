@@ -39,7 +39,7 @@
 //! - [`ControllerState`]: what changes of a controller, as plain data to save, send and restore.
 //! - [`CommandMapper`]: from a gamepad to a [`Command`]; or make your own.
 //! - [`Blend`], [`Mlp`], [`evaluate_batch_into`]: the parts, for an engine with its own controller or a crowd.
-//! - [`format`](mod@format): the pack's manifest. [`training`]: what only a trainer needs.
+//! - [`contract`]: what every physics has in common: poses, pushes, limits. [`format`](mod@format): the pack's manifest. [`training`]: what only a trainer needs.
 //!
 //! # Conventions
 //! SI units, radians, z up, right-handed. Quaternions are glam's (x, y, z, w). *Parameters* are the numbers of a
@@ -64,6 +64,7 @@ mod batch;
 pub mod bindings;
 mod blend;
 mod command;
+pub mod contract;
 mod controller;
 mod controller_state;
 mod evaluator;

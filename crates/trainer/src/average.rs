@@ -59,9 +59,9 @@ mod tests {
     use std::collections::HashMap;
 
     use super::*;
-    use crate::Rng;
     use crate::checkpoint::Trained;
     use crate::nn::Adam;
+    use random::Rng;
 
     fn of(values: &[(&str, f32)], inputs: usize) -> (Checkpoint, PathBuf) {
         let network = |value: f32| {

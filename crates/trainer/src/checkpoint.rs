@@ -5,12 +5,12 @@
 use std::collections::HashMap;
 use std::path::{Path, PathBuf};
 
+use files::{read_bounded, write_atomically, write_keeping_previous};
+use random::Rng;
 use safetensors::tensor::{Dtype, TensorView};
 use serde::{Deserialize, Serialize};
 
-use crate::Rng;
 use crate::nn::{Adam, Network};
-use crate::storage::{read_bounded, write_atomically, write_keeping_previous};
 
 mod numbers;
 mod read;

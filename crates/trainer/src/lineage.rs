@@ -5,8 +5,8 @@ use std::path::{Path, PathBuf};
 
 use serde::{Deserialize, Serialize};
 
-use crate::storage::read_text_bounded;
-use crate::text::quoted;
+use files::quoted;
+use files::read_text_bounded;
 
 mod execute;
 

@@ -5,8 +5,8 @@ use std::process::ExitCode;
 
 use anyhow::{Context, Result};
 use clap::{Parser, Subcommand};
+use clips::ClipFolder;
 use physics_bridge::Model;
-use trainer::clip::ClipFolder;
 use trainer::env::Normalisers;
 use trainer::normaliser_file;
 use trainer::workspace::{Workspace, newest_or_kept};

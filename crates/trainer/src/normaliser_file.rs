@@ -2,14 +2,14 @@
 
 use std::path::Path;
 
+use files::quoted;
+use files::{read_bounded, write_atomically};
 use policy_core::Skeleton;
 use policy_core::training::Normaliser;
 use safetensors::tensor::{Dtype, SafeTensors, TensorView};
 
 use crate::checkpoint::{CheckpointError, bytes, floats};
 use crate::env::Normalisers;
-use crate::storage::{read_bounded, write_atomically};
-use crate::text::quoted;
 
 const NAMES: [&str; 2] = ["observation", "discriminator"];
 

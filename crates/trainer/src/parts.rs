@@ -4,8 +4,8 @@ use std::path::PathBuf;
 
 use anyhow::{Context, Result, anyhow, ensure};
 use policy_core::{BodyId, Skeleton};
+use random::Rng;
 
-use crate::Rng;
 use crate::amp::DiscriminatorLearner;
 use crate::checkpoint::{CRITIC, Checkpoint};
 use crate::env::{Demonstrations, GraphNode, TerminationHeights, TrainingGraph};

@@ -5,7 +5,7 @@ use std::path::Path;
 use anyhow::{Context, Result};
 use plotters::prelude::*;
 
-use crate::storage::write_atomically;
+use files::write_atomically;
 
 /// Curves that are drawn: column of the metrics, and what it says.
 const CURVES: [(&str, &str); 6] = [

@@ -5,12 +5,12 @@
 
 use std::path::{Path, PathBuf};
 
+use files::quoted;
 use serde::Serialize;
 
 use crate::amp::DiscriminatorConfig;
 use crate::env::EnvironmentConfig;
 use crate::ppo::PpoConfig;
-use crate::text::quoted;
 
 mod checks;
 mod file;

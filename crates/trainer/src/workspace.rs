@@ -4,10 +4,10 @@ use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
 use anyhow::{Context, Result, bail};
+use clips::{ClipError, ClipFolder};
 use physics_bridge::Model;
 
 use crate::checkpoint::{ACTOR, Checkpoint, CheckpointError, EMA, PARENT_DISCRIMINATOR};
-use crate::clip::{ClipError, ClipFolder};
 use crate::env::{Demonstrations, Normalisers};
 use crate::recipe::Recipe;
 use crate::run::{CHECKPOINT, Existing, Loaded, METRICS, METRICS_FILE, Run, RunFolder, newest_checkpoint};

@@ -3,10 +3,10 @@
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
+use clips::{ClipFolder, fit};
 use physics_bridge::{Character, Model};
 use policy_core::{CharacterPack, Command, Controller};
-use trainer::clip::ClipFolder;
-use trainer::env::{Normalisers, fit};
+use trainer::env::Normalisers;
 use trainer::pack::{PackPlan, TrainedSkill, bind};
 use trainer::recipe::Recipe;
 use trainer::run::Existing;

@@ -1,56 +1,21 @@
 //! Every recipe of the project runs two small iterations, parents before children, and all of them go into a pack.
 
-use std::path::{Path, PathBuf};
+mod common;
+
+use std::path::Path;
 use std::sync::Arc;
 
+use clips::ClipFolder;
+use common::{project, small, write_clip};
 use physics_bridge::Model;
-use policy_core::{Arithmetic, CharacterPack, MlpScratch, Skeleton};
+use policy_core::{Arithmetic, CharacterPack, MlpScratch};
 use trainer::checkpoint::Checkpoint;
-use trainer::clip::ClipFolder;
 use trainer::env::Normalisers;
 use trainer::nn::{Network, Pass};
 use trainer::pack::{PackPlan, TrainedSkill, bind};
 use trainer::recipe::Recipe;
 use trainer::run::{Existing, Run};
 use trainer::workspace::Workspace;
-
-fn project() -> PathBuf {
-    Path::new(env!("CARGO_MANIFEST_DIR")).join("../..")
-}
-
-/// A clip of a body that stands and sways, under any name: what clip it is doesn't matter here.
-fn write_clip(folder: &Path, name: &str) {
-    let frames = 25;
-    let time = |i: usize| i as f32 / 24.0;
-    let sway = |i: usize| (std::f32::consts::TAU * time(i)).sin();
-    let rotations = |i: usize| {
-        let mut all = vec![[0.0, 0.0, 0.0, 1.0]; 15];
-        let half = 0.1 * sway(i);
-        all[1] = [0.0, half.sin(), 0.0, half.cos()];
-        all
-    };
-    let text = serde_json::json!({
-        "loop": "wrap", "bodies": Skeleton::humanoid().bodies().iter().map(|b| b.name.clone()).collect::<Vec<_>>(), "times": (0..frames).map(time).collect::<Vec<_>>(),
-        "root_pos": (0..frames).map(|i| [0.5 * time(i), 0.0, 0.9]).collect::<Vec<_>>(),
-        "local_rot": (0..frames).map(rotations).collect::<Vec<_>>(),
-    });
-    std::fs::write(folder.join(format!("{name}.json")), text.to_string()).unwrap();
-}
-
-/// The recipe with everything that costs time made small.
-fn small(mut recipe: Recipe) -> Recipe {
-    // Where skills are trained together, enough characters that some act as each of them.
-    let num_envs = if recipe.paths.is_empty() { 6 } else { 36 };
-    for phase in &mut recipe.phases {
-        (phase.environment.num_envs, phase.environment.horizon) = (num_envs, 4);
-        (phase.ppo.epochs, phase.ppo.minibatch) = (1, 12);
-        phase.ppo.critic_hidden = vec![16];
-        phase.discriminator.hidden = vec![16, 8];
-        (phase.discriminator.batch, phase.discriminator.updates) = (8, 1);
-        phase.discriminator.replay_size = 64;
-    }
-    recipe
-}
 
 #[test]
 fn every_recipe_runs_and_binds_into_a_pack() {
@@ -148,97 +113,6 @@ fn slim_checkpoints_are_enough_to_continue(workspace: &Workspace, folder: &Path)
     }
     let missing = alone.prepare(small(alone.recipe("jog").unwrap()), 3, Existing::Resume);
     assert!(missing.is_ok(), "its parent was trained together with others");
-}
-
-/// Somewhere to train Walk and Idle, of clips that only sway.
-fn workspace_with_clips(folder: &Path) -> Workspace {
-    write_clip(folder, "walk");
-    write_clip(folder, "idle");
-    let model = Model::load(project().join("assets/humanoid.xml")).unwrap();
-    let clips = ClipFolder::from_argument(Some(folder.to_owned())).unwrap();
-    let normalisers = Normalisers::from_clips(&[clips.load("walk").unwrap()], &model).unwrap();
-    Workspace {
-        recipes: project().join("assets/recipes"),
-        runs: folder.join("runs"),
-        kept: folder.join("kept"),
-        clips,
-        model,
-        normalisers,
-        parents: None,
-    }
-}
-
-#[test]
-fn a_character_that_starts_in_its_clip_tracks_it_until_its_error_is_too_large() {
-    let folder = tempfile::tempdir().unwrap();
-    let workspace = workspace_with_clips(folder.path());
-    let text = "skill = \"walk\"\nclips = [{ name = \"walk\" }]\n[[phases]]\nsamples = 100000\n\
-        environment.reward = { task_weight = 0.0, tracking_weight = 1.0 }\n";
-    let recipe = small(Recipe::parse(Path::new("x.toml"), text).unwrap());
-    let best = best_tracking(&mut workspace.prepare(recipe, 1, Existing::Overwrite).unwrap());
-    assert!((0.5..1.0).contains(&best), "{best}");
-}
-
-fn best_tracking(run: &mut Run) -> f64 {
-    let each = (0..12).map(|_| {
-        let episodes = run.advance().unwrap().episodes;
-        episodes.tracking / episodes.ticks as f64
-    });
-    let best = each.fold(0.0, f64::max);
-    run.save().unwrap();
-    best
-}
-
-#[test]
-fn trackers_track_the_clips_of_the_nodes_they_rest_at() {
-    let folder = tempfile::tempdir().unwrap();
-    let workspace = workspace_with_clips(folder.path());
-    let recipe = |text: &str| small(Recipe::parse(Path::new("x.toml"), text).unwrap());
-    let walk = "skill = \"walk\"\nclips = [{ name = \"walk\" }]\n[[phases]]\nsamples = 24\nenvironment.reward.task_weight = 0.0\n";
-    let idle =
-        "skill = \"idle\"\nparent = \"walk\"\nclips = [{ name = \"idle\" }]\n[[phases]]\nsamples = 24\n";
-    for skill in [walk, idle] {
-        let mut run = workspace.prepare(recipe(skill), 1, Existing::Overwrite).unwrap();
-        run.advance().unwrap();
-        run.save().unwrap();
-    }
-    let both = "skill = \"both\"\npaths = [[\"walk\", \"idle\"]]\n[[phases]]\nsamples = 100000\n";
-    let mut all = recipe(both);
-    let set = |all: &mut Recipe, share: f32| {
-        let reward = &mut all.phases[0].environment.reward;
-        (reward.tracking_share, reward.tracking_weight) = (share, 0.5);
-    };
-    all.phases[0].environment.reset.along_path = true;
-    assert_eq!(best_tracking(&mut workspace.prepare(all.clone(), 1, Existing::Overwrite).unwrap()), 0.0);
-    // Those that are no trackers, here nearly surely all, are neither paid for it nor fail by it.
-    all.skill = "others".into();
-    set(&mut all, 1e-9);
-    assert_eq!(best_tracking(&mut workspace.prepare(all.clone(), 1, Existing::Overwrite).unwrap()), 0.0);
-    all.skill = "again".into();
-    set(&mut all, 1.0);
-    let best = best_tracking(&mut workspace.prepare(all.clone(), 1, Existing::Overwrite).unwrap());
-    assert!((0.3..1.0).contains(&best), "{best}");
-
-    // Where nothing is near enough, a character that lost the clip in the first tick is not found again in the next.
-    let strict = Workspace { recipes: folder.path().join("strict"), ..workspace.clone() };
-    std::fs::create_dir(&strict.recipes).unwrap();
-    for skill in ["walk", "idle"] {
-        let mut recipe = workspace.recipe(skill).unwrap();
-        recipe.phases.iter_mut().for_each(|p| p.environment.termination.max_tracking_error_metres = 1e-6);
-        let path = strict.recipes.join(format!("{skill}.toml"));
-        std::fs::write(path, toml::to_string(&recipe).unwrap()).unwrap();
-    }
-    all.skill = "strict".into();
-    let mut run = strict.prepare(all, 1, Existing::Overwrite).unwrap();
-    run.advance().unwrap();
-    let mut mean = || {
-        let reports = (0..6).map(|_| run.advance().unwrap().episodes);
-        let (tracking, ticks) =
-            reports.fold((0.0, 0.0), |sum, p| (sum.0 + p.tracking, sum.1 + p.ticks as f64));
-        tracking / ticks
-    };
-    let after_the_first_ticks = mean();
-    assert!(after_the_first_ticks < 0.1 * best, "{after_the_first_ticks} against {best}");
 }
 
 fn the_pack_acts_as_the_trainer(pack: &CharacterPack, skills: &[TrainedSkill]) {

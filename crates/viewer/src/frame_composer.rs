@@ -11,6 +11,7 @@ use crate::overlay::{Overlay, Prepared};
 use crate::recorder::{self, Kind, Recorder};
 use crate::render::{Appearance, OffScreen, RenderConfig, Renderer, Scene};
 use crate::scene_setup::ground_grid;
+use crate::text::counted;
 
 /// Folder of recordings, in the present one.
 const FOLDER: &str = "policy-space-recordings";
@@ -223,7 +224,9 @@ impl FrameComposer {
             let path = recorder.path().display().to_string();
             app.notice = Some(match recorder.finish() {
                 Ok(0) => format!("wrote {path}"),
-                Ok(dropped) => format!("wrote {path}; {dropped} pictures came too fast and were left out"),
+                Ok(dropped) => {
+                    format!("wrote {path} without {} that came too fast", counted(dropped as u64, "picture"))
+                }
                 Err(error) => error.to_string(),
             });
         }

@@ -62,8 +62,12 @@ fn run(cli: &Cli) -> anyhow::Result<()> {
         Some(Task::BenchFrame(choices)) => say(&bench::frame(choices)?),
         None if cli.demo.headless && cli.demo.poses.is_some() => match headless::play(&cli.demo)? {
             Some(p) => say(&format!(
-                "{}: {:.2} s of {} poses at {:.2} Hz, {} pictures",
-                p.clip, p.seconds, p.poses, p.hz, p.frames
+                "{}: {:.2} s of {} at {:.2} Hz, {}",
+                p.clip,
+                p.seconds,
+                text::counted(p.poses as u64, "pose"),
+                p.hz,
+                text::counted(p.frames as u64, "picture"),
             )),
             None => Ok(()),
         },

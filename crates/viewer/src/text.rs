@@ -1,4 +1,4 @@
-//! Text that may come from a file, made fit to be shown.
+//! Text as it is shown: quotations of files made harmless, and numbers of things.
 
 /// At most so many characters of a text.
 #[must_use]
@@ -22,6 +22,18 @@ pub fn printable(text: &str, most: usize) -> String {
     shown
 }
 
+/// A noun for so many things: `character` for one, `characters` for none or several.
+#[must_use]
+pub fn noun(number: u64, one: &str) -> String {
+    format!("{one}{}", if number == 1 { "" } else { "s" })
+}
+
+/// A number of things: `1 fall`, `2 falls`.
+#[must_use]
+pub fn counted(number: u64, one: &str) -> String {
+    format!("{number} {}", noun(number, one))
+}
+
 /// False for control characters and for those that turn the direction of the text.
 fn is_harmless(character: char) -> bool {
     let turns =
@@ -39,5 +51,11 @@ mod tests {
         assert_eq!(printable("\u{202e}gnp", 100), "\\u{202e}gnp");
         assert_eq!(printable(&"é".repeat(10), 3), "ééé ...");
         assert_eq!(printable("plain", 5), "plain");
+    }
+
+    #[test]
+    fn one_thing_is_singular() {
+        assert_eq!([0, 1, 2].map(|n| counted(n, "fall")), ["0 falls", "1 fall", "2 falls"]);
+        assert_eq!(noun(1, "character"), "character");
     }
 }

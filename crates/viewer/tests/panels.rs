@@ -3,78 +3,14 @@
 mod common;
 
 use common::app_with;
+use common::harness::{click, harness, open};
 use egui::accesskit::Role;
-use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable as _;
 use policy_core::{Blend, BlendMode, Button, Goal, NodeId, SkillId};
 use viewer::analysis::Analysis;
-use viewer::app::{App, Failure, PanelKind, Preset, Record, Side};
+use viewer::app::{Failure, PanelKind, Preset, Record, ViewerCommand};
 use viewer::camera::CameraMode;
 use viewer::sim::GroundKind;
-
-fn harness(app: App) -> Harness<'static, App> {
-    Harness::builder()
-        .with_size(egui::vec2(900.0, 700.0))
-        .build_ui_state(|ui, app: &mut App| app.ui(ui, 0.0), app)
-}
-
-fn open(kind: PanelKind) -> Harness<'static, App> {
-    harness(app_with(kind))
-}
-
-/// Clicks what carries `label` and lets two frames pass.
-fn click(harness: &mut Harness<'_, App>, label: &str) {
-    harness.get_by_role_and_label(Role::Button, label).click();
-    harness.run_steps(2);
-}
-
-#[test]
-fn the_bar_opens_closes_and_panels_change_sides() {
-    let mut harness = open(PanelKind::Record);
-    click(&mut harness, "Analysis");
-    assert!(harness.state().layout.side_of(PanelKind::Analysis).is_some());
-    click(&mut harness, "Analysis");
-    assert_eq!(harness.state().layout.side_of(PanelKind::Analysis), None);
-    click(&mut harness, "<>");
-    assert_eq!(harness.state().layout.side_of(PanelKind::Record), Some(Side::Right));
-    click(&mut harness, "x");
-    assert_eq!(harness.state().layout.side_of(PanelKind::Record), None);
-}
-
-#[test]
-fn a_ruler_overrides_the_trigger_both_ways() {
-    let mut harness = open(PanelKind::Paths);
-    harness.run_steps(2);
-    let path = harness.state().sim.pack().graph().path_named("speed").unwrap();
-    // Dragging along the ruler asks for a coordinate.
-    let name = harness.get_by_label("speed").rect();
-    let y = name.bottom() + 20.0;
-    harness.drag_at(egui::pos2(40.0, y));
-    harness.run_steps(1);
-    harness.hover_at(egui::pos2(150.0, y));
-    harness.run_steps(2);
-    harness.drop_at(egui::pos2(150.0, y));
-    harness.run_steps(2);
-    let Some(Goal::Path { path: asked, coordinate }) = harness.state().sim.overrides.goal else {
-        panic!("no override: {:?}", harness.state().sim.overrides.goal);
-    };
-    assert!(asked == path && coordinate > 0.2, "{asked:?} {coordinate}");
-    // The world follows the override ...
-    let start = harness.state().sim.player().report().position;
-    for _ in 0..15 {
-        harness.state_mut().tick();
-    }
-    let now = harness.state().sim.player().report().position;
-    assert!(now.t > start.t + 0.1, "from {start:?} to {now:?}");
-    // ... until it is given back: then the trigger moves the cursor.
-    click(&mut harness, "Back to the triggers");
-    assert_eq!(harness.state().sim.overrides.goal, None);
-    harness.state_mut().pad.state.left_stick = [0.0, 1.0];
-    harness.state_mut().tick();
-    let report = *harness.state().sim.player().report();
-    let coordinate = harness.state().sim.pack().graph().path(path).coordinate(report.goal);
-    assert_eq!(coordinate, Some(1.0));
-}
 
 #[test]
 fn the_graph_sends_the_character_to_a_node() {
@@ -211,6 +147,17 @@ fn physics_pauses_steps_goes_back_and_changes_the_ground() {
 }
 
 #[test]
+fn one_character_is_singular_and_two_are_plural() {
+    let mut harness = open(PanelKind::Physics);
+    harness.run_steps(2);
+    assert!(harness.query_by_role_and_label(Role::Slider, "character").is_some());
+    assert!(harness.query_by_role_and_label(Role::Slider, "characters").is_none());
+    harness.state_mut().apply(ViewerCommand::Characters(2));
+    harness.run_steps(2);
+    assert!(harness.query_by_role_and_label(Role::Slider, "characters").is_some());
+}
+
+#[test]
 fn play_goes_on_after_stepping_back_and_scrubbing() {
     let mut harness = open(PanelKind::Physics);
     for _ in 0..30 {
@@ -230,83 +177,6 @@ fn play_goes_on_after_stepping_back_and_scrubbing() {
 }
 
 #[test]
-fn tab_leaves_the_keyboard_to_the_game() {
-    let mut harness = open(PanelKind::Physics);
-    for _ in 0..3 {
-        harness.key_press(egui::Key::Tab);
-        harness.run_steps(2);
-    }
-    harness.key_down(egui::Key::W);
-    harness.run_steps(2);
-    harness.state_mut().advance(0.2);
-    assert!(harness.state().input().left_stick[1] > 0.9, "{:?}", harness.state().input());
-    assert!(harness.state().layout.hidden, "three times Tab hides, shows and hides");
-}
-
-#[test]
-fn a_number_can_still_be_typed() {
-    let mut harness = open(PanelKind::Layers);
-    harness.run_steps(2);
-    harness.get_by_role_and_label(Role::TextInput, "Name").click();
-    harness.run_steps(2);
-    harness.key_down(egui::Key::W);
-    harness.run_steps(2);
-    harness.state_mut().advance(0.2);
-    assert_eq!(harness.state().input().left_stick, [0.0; 2], "the letter is for the text field");
-    // Escape leaves the field, and nothing else.
-    harness.key_press(egui::Key::Escape);
-    harness.run_steps(3);
-    assert!(!harness.state().leaving && !harness.state().quit);
-}
-
-#[test]
-fn escape_asks_before_it_leaves() {
-    let mut harness = open(PanelKind::Record);
-    let escape = |harness: &mut Harness<'_, App>| {
-        harness.key_press(egui::Key::Escape);
-        harness.run_steps(3);
-    };
-    escape(&mut harness);
-    assert!(harness.state().leaving && !harness.state().quit);
-    assert!(harness.query_by_role_and_label(Role::Button, "Stay (Esc)").is_some());
-    escape(&mut harness);
-    assert!(!harness.state().leaving && !harness.state().quit);
-    escape(&mut harness);
-    click(&mut harness, "Leave (Enter)");
-    assert!(harness.state().quit);
-}
-
-#[test]
-fn escape_closes_a_drop_down_and_nothing_else() {
-    let mut harness = open(PanelKind::Layers);
-    harness.run_steps(2);
-    harness.get_by_role_and_label(Role::ComboBox, "0 is").click();
-    harness.run_steps(3);
-    assert!(egui::Popup::is_any_open(&harness.ctx), "the drop-down is open");
-    harness.key_press(egui::Key::Escape);
-    harness.run_steps(3);
-    assert!(!egui::Popup::is_any_open(&harness.ctx));
-    assert!(!harness.state().leaving && !harness.state().quit);
-}
-
-#[test]
-fn a_trigger_takes_over_again_from_a_dragged_path() {
-    let mut app = app_with(PanelKind::Paths);
-    let speed = app.sim.pack().graph().path_named("speed").unwrap();
-    app.pad.state.left_stick = [0.0, 1.0];
-    app.pad.state.right_trigger = 0.5;
-    app.apply(viewer::app::ViewerCommand::Goal(Some(Goal::Path { path: speed, coordinate: 1.0 })));
-    app.tick();
-    assert!(app.sim.overrides.goal.is_some(), "a trigger that is held still is no wish");
-    app.pad.state.right_trigger = 0.1;
-    app.tick();
-    assert!(app.sim.overrides.goal.is_some(), "nor is one that is let go");
-    app.pad.state.right_trigger = 0.4;
-    app.tick();
-    assert_eq!(app.sim.overrides.goal, None);
-}
-
-#[test]
 fn the_status_line_says_what_the_layers_blend() {
     let mut harness = open(PanelKind::Layers);
     harness.state_mut().layers = viewer::app::Layers {
@@ -318,42 +188,6 @@ fn the_status_line_says_what_the_layers_blend() {
     harness.state_mut().tick();
     let place = viewer::app::place(harness.state());
     assert_eq!(place, "layers: idle - walk 25, 50, 100 %");
-}
-
-#[test]
-fn help_fits_the_window() {
-    for size in [egui::vec2(1280.0, 720.0), egui::vec2(800.0, 500.0)] {
-        let mut app = app_with(PanelKind::Record);
-        app.help = true;
-        let mut harness =
-            Harness::builder().with_size(size).build_ui_state(|ui, app: &mut App| app.ui(ui, 0.0), app);
-        harness.run_steps(4);
-        let rect = harness.ctx.memory(|m| m.area_rect(egui::Id::unique("help"))).unwrap();
-        assert!(rect.top() >= 0.0 && rect.bottom() <= size.y, "{rect} in {size}");
-    }
-}
-
-#[test]
-fn panels_leave_a_view_however_small_the_window() {
-    for (width, least) in [(1280.0, 400.0), (800.0, 400.0), (640.0, 300.0), (320.0, 320.0)] {
-        let layout = viewer::app::PanelLayout::default();
-        let app = App::new(common::simulation(), layout);
-        let mut harness = Harness::builder()
-            .with_size(egui::vec2(width, 480.0))
-            .build_ui_state(|ui, app: &mut App| app.ui(ui, 0.0), app);
-        harness.run_steps(3);
-        let free = harness.ctx.content_rect().width() - side_widths(&harness);
-        assert!(free >= least, "{width}: {free} are left");
-    }
-}
-
-/// Width of the columns of panels.
-fn side_widths(harness: &Harness<'_, App>) -> f32 {
-    let width = |id: &str| {
-        egui::containers::panel::PanelState::load(&harness.ctx, egui::Id::unique(id))
-            .map_or(0.0, |s| s.outer_rect.width())
-    };
-    width("left") + width("right")
 }
 
 #[test]
@@ -405,94 +239,4 @@ fn a_failure_offers_rewind_and_reset() {
     harness.run_steps(2);
     click(&mut harness, "Start again");
     assert!(harness.state().failure.is_none() && harness.state().sim.player().position().length() < 0.1);
-}
-
-#[test]
-fn keys_walk_help_and_hide() {
-    let mut harness = open(PanelKind::Record);
-    harness.key_down(egui::Key::W);
-    harness.key_down(egui::Key::E);
-    harness.run_steps(2);
-    harness.state_mut().advance(0.2);
-    let input = harness.state().input();
-    assert!(input.left_stick[1] > 0.9 && input.right_trigger > 0.1 && input.right_trigger < 0.5, "{input:?}");
-    harness.key_up(egui::Key::W);
-    harness.key_up(egui::Key::E);
-    harness.key_press(egui::Key::F1);
-    harness.run_steps(3);
-    assert!(harness.state().help);
-    assert!(harness.query_by_label("Keyboard and mouse").is_some());
-    harness.key_press(egui::Key::Tab);
-    harness.run_steps(3);
-    assert!(harness.state().layout.hidden);
-    // A pad pulled out in mid-run leaves nothing behind.
-    harness.state_mut().pad.state.left_stick = [1.0, 0.0];
-    harness.state_mut().advance(0.1);
-    harness.state_mut().pad = viewer::app::PadView::default();
-    for _ in 0..10 {
-        harness.state_mut().advance(0.1);
-    }
-    assert_eq!(harness.state().sim.player().command.target, None);
-}
-
-#[test]
-fn dragging_a_body_pulls_it() {
-    let mut app = app_with(PanelKind::Record);
-    app.layout.hidden = true;
-    app.clock.paused = true;
-    let screen = egui::vec2(900.0, 700.0);
-    let view = app.camera.view(0.0);
-    let torso = app.sim.player().poses(1.0).positions[1];
-    let clip = view.clip_from_world(screen.x / screen.y).project_point3(torso);
-    let at = egui::pos2((clip.x * 0.5 + 0.5) * screen.x, (0.5 - clip.y * 0.5) * screen.y);
-    let mut harness = harness(app);
-    harness.run_steps(2);
-    harness.drag_at(at);
-    harness.run_steps(2);
-    for step in 1..=8 {
-        harness.hover_at(at + egui::vec2(15.0 * step as f32, 0.0));
-        harness.run_steps(1);
-    }
-    let grab = harness.state().grab.expect("a body is held");
-    // The camera looks along x: to the right on screen is towards negative y.
-    assert!(grab.force().y < -20.0, "{grab:?}");
-    for _ in 0..10 {
-        harness.state_mut().tick();
-    }
-    assert!(harness.state().sim.player().position().y < -0.01, "{}", harness.state().sim.player().position());
-    harness.drop_at(at);
-    harness.run_steps(2);
-    assert_eq!(harness.state().grab, None);
-}
-
-#[test]
-fn a_press_beside_a_limb_turns_the_camera_alone_and_one_on_it_pulls_alone() {
-    let mut app = app_with(PanelKind::Record);
-    app.layout.hidden = true;
-    app.clock.paused = true;
-    let screen = egui::vec2(900.0, 700.0);
-    let view = app.camera.view(0.0);
-    let on_screen = |point: glam::Vec3| {
-        let clip = view.clip_from_world(screen.x / screen.y).project_point3(point);
-        egui::pos2((clip.x * 0.5 + 0.5) * screen.x, (0.5 - clip.y * 0.5) * screen.y)
-    };
-    let arm = app.sim.player().poses(1.0).positions
-        [policy_core::Skeleton::humanoid().body_named("left_lower_arm").unwrap().index()];
-    // The camera looks along x: 8 cm further to the left is beside the arm.
-    for (at, pulls) in [(on_screen(arm + glam::Vec3::Y * 0.08), false), (on_screen(arm), true)] {
-        let mut harness = harness(app_with(PanelKind::Record));
-        harness.state_mut().layout.hidden = true;
-        harness.state_mut().clock.paused = true;
-        harness.run_steps(2);
-        let yaw = harness.state().camera.yaw;
-        harness.drag_at(at);
-        harness.run_steps(2);
-        // Towards the body, so that the mouse is over it once it is a drag.
-        for step in 1..=6 {
-            harness.hover_at(at + egui::vec2(8.0 * step as f32, 0.0));
-            harness.run_steps(1);
-        }
-        let turned = (harness.state().camera.yaw - yaw).abs() > 1e-3;
-        assert_eq!((harness.state().grab.is_some(), turned), (pulls, !pulls), "at {at}");
-    }
 }

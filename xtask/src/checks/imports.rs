@@ -33,12 +33,26 @@ const RULES: &[Rule] = &[
     rule("physics-bridge", &["policy-core"], &[]),
     rule("physics-rapier", &["policy-core"], &[]),
     rule("policy-capi", &["policy-core"], &[]),
-    rule("trainer", &["policy-core", "physics-bridge"], &[]),
-    rule("viewer", &["policy-core", "physics-bridge", "gamepad"], &[]),
+    rule("files", &[], &[]),
+    rule("pca", &[], &[]),
+    rule("random", &["physics-bridge"], &["policy-core"]),
+    rule("clips", &["policy-core", "physics-bridge", "files"], &[]),
+    rule("evaluation", &["policy-core", "physics-bridge", "clips", "random", "pca"], &[]),
+    rule("trainer", &["policy-core", "physics-bridge", "clips", "random", "files", "evaluation"], &[]),
+    rule("viewer", &["policy-core", "physics-bridge", "gamepad", "pca"], &[]),
     rule("bevy-plugin", &["policy-core"], &["physics-bridge"]),
     rule(
         "integration-tests",
-        &["policy-core", "gamepad", "physics-bridge", "physics-rapier", "trainer", "viewer", "bevy-plugin"],
+        &[
+            "policy-core",
+            "gamepad",
+            "physics-bridge",
+            "physics-rapier",
+            "clips",
+            "trainer",
+            "viewer",
+            "bevy-plugin",
+        ],
         &[],
     ),
     rule("xtask", &[], &[]),
@@ -70,6 +84,7 @@ const OWNED: &[Owned] = &[
     owned("winit", &["viewer"], DRAWS),
     owned("egui*", &["viewer"], DRAWS),
     owned("gltf", &["viewer"], DRAWS),
+    owned("gemm", &["trainer"], "only trainer learns"),
     owned("bevy*", &["bevy-plugin"], "only bevy-plugin knows an engine"),
 ];
 
@@ -77,6 +92,7 @@ const OWNED: &[Owned] = &[
 const NEVER_BELOW: &[(&str, &[&str])] = &[
     ("xtask", &["mujoco-rs"]),
     ("policy-core", &["mujoco-rs", "hidapi", "gilrs", "wgpu", "winit", "egui", "gltf", "bevy"]),
+    ("evaluation", &["wgpu", "winit", "egui", "gemm"]),
     ("trainer", &["wgpu", "winit", "egui"]),
 ];
 

@@ -36,6 +36,9 @@ fn the_architecture_as_drawn_has_no_breach() {
             ("policy-core", &[("glam", "normal"), ("criterion", "dev")]),
             ("gamepad", &[("policy-core", "normal"), ("hidapi", "normal")]),
             ("physics-bridge", &[("policy-core", "normal"), ("mujoco-rs", "normal")]),
+            ("pca", &[]),
+            ("evaluation", &[("policy-core", "normal"), ("physics-bridge", "normal"), ("pca", "normal")]),
+            ("trainer", &[("evaluation", "normal"), ("gemm", "normal")]),
             ("viewer", &[("policy-core", "normal"), ("physics-bridge", "normal"), ("egui-wgpu", "normal")]),
             ("bevy-plugin", &[("policy-core", "normal"), ("physics-bridge", "dev"), ("bevy_app", "normal")]),
             ("xtask", &[("clap", "normal")]),
@@ -51,7 +54,8 @@ fn a_crate_of_the_workspace_is_imported_only_where_allowed() {
         &[
             ("policy-core", &[("gamepad", "normal")]),
             ("gamepad", &[]),
-            ("trainer", &[("viewer", "dev")]),
+            ("trainer", &[("viewer", "dev"), ("evaluation", "normal")]),
+            ("evaluation", &[("trainer", "dev")]),
             ("viewer", &[("trainer", "normal")]),
             ("bevy-plugin", &[("physics-bridge", "normal")]),
             ("physics-bridge", &[]),
@@ -62,6 +66,7 @@ fn a_crate_of_the_workspace_is_imported_only_where_allowed() {
         breaches(&metadata).unwrap(),
         [
             "bevy-plugin imports physics-bridge",
+            "evaluation imports trainer",
             "policy-core imports gamepad",
             "trainer imports viewer",
             "viewer imports trainer",

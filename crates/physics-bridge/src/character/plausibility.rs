@@ -3,24 +3,10 @@
 
 use glam::DVec3;
 use policy_core::BodyId;
+use policy_core::contract::{MAX_DEPTH_M, MAX_DISTANCE_M, MAX_SPEED_MPS, MAX_SPIN_RADPS};
 
 use super::sense::{velocity_at, velocity_reference};
 use super::{Cause, Character, Excess};
-
-/// Largest plausible speed of a body, metres per second.
-pub const MAX_SPEED_MPS: f32 = 50.0;
-
-/// Largest plausible angular speed of a body, radians per second. Motors of normal strength that are driven at
-/// random spin a foot at 35 rad/s.
-pub const MAX_SPIN_RADPS: f32 = 200.0;
-
-/// How deep the origin of a body may be below the ground, metres. Generous, because an edge of a steep step
-/// may be inside a foot.
-pub const MAX_DEPTH_M: f32 = 0.5;
-
-/// How far a body may be from the origin of the world, metres. Further away, single precision resolves a
-/// position to a millimetre only.
-pub const MAX_DISTANCE_M: f32 = 10_000.0;
 
 /// A body that does what no body can.
 pub(super) struct Fault {

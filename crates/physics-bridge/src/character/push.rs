@@ -3,6 +3,9 @@
 use glam::{DVec3, Vec3};
 use mujoco_rs::wrappers::mj_data::MjData;
 use mujoco_rs::wrappers::mj_model::MjModel;
+use policy_core::contract::{
+    MAX_FORCE_N, MAX_IMPULSE_NS, MAX_PUSHED_MPS, PushError, check_impulse, check_push,
+};
 use policy_core::{BodyId, Skeleton};
 use serde::{Deserialize, Serialize};
 use std::sync::Arc;
@@ -10,39 +13,6 @@ use std::sync::Arc;
 use super::Character;
 use super::sense::{velocity_at, velocity_reference};
 use crate::description::layout::Layout;
-
-/// Why a push is refused.
-#[derive(Clone, Debug, PartialEq, thiserror::Error)]
-#[non_exhaustive]
-pub enum PushError {
-    /// The character has no such body.
-    #[error("expected one of {bodies} bodies, found index {found}")]
-    Body {
-        /// Bodies of the character.
-        bodies: usize,
-        /// Index of the body.
-        found: usize,
-    },
-    /// A number is not finite, or too large to mean anything.
-    #[error("expected {what} of at most {most} in size, found {found}")]
-    Size {
-        /// `a force` in newtons, `an impulse` in newton seconds or `a duration` in seconds.
-        what: &'static str,
-        /// The limit.
-        most: f32,
-        /// Its size.
-        found: f32,
-    },
-}
-
-/// Largest force, newtons, and largest impulse, newton seconds.
-const MOST_FORCE: f32 = 1e6;
-
-/// Speed to which pushes drive a body, metres per second.
-pub const MAX_PUSHED_MPS: f32 = 20.0;
-
-/// Longest push, seconds.
-const MOST_SECS: f32 = 3600.0;
 
 /// The pushes under way, one entry for each body. World axes, at the centre of mass of each body.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -121,8 +91,8 @@ impl Pushes {
 
     /// True when every number is one that [`Character::push`] and [`Character::impulse`] accept.
     pub(super) fn are_sound(&self) -> bool {
-        let sound = |v: &[f32; 3]| Vec3::from(*v).length() <= MOST_FORCE;
-        self.forces.iter().all(sound) && self.impulses.iter().all(sound)
+        let within = |all: &[[f32; 3]], most| all.iter().all(|v| Vec3::from(*v).length() <= most);
+        within(&self.forces, MAX_FORCE_N) && within(&self.impulses, MAX_IMPULSE_NS)
     }
 }
 
@@ -137,9 +107,7 @@ impl Character {
     /// When there is no such body, a number is not finite, the force is over 1 MN, or the duration negative or
     /// over an hour.
     pub fn push(&mut self, body: BodyId, force: Vec3, secs: f32) -> Result<(), PushError> {
-        self.check_body(body)?;
-        at_most("a force", force.length(), MOST_FORCE)?;
-        at_most("a duration", secs, MOST_SECS)?;
+        check_push(body, self.pushes.len(), force, secs)?;
         let substeps = (f64::from(secs) / self.model.timestep_secs()).round();
         self.pushes.forces[body.index()] = force.to_array();
         self.pushes.substeps_left[body.index()] = substeps as u32;
@@ -155,11 +123,6 @@ impl Character {
         left.is_some_and(|&left| left > 0) || self.pushes.impulses.get(index).is_some_and(|i| *i != [0.0; 3])
     }
 
-    fn check_body(&self, body: BodyId) -> Result<(), PushError> {
-        let (found, bodies) = (body.index(), self.pushes.forces.len());
-        if found < bodies { Ok(()) } else { Err(PushError::Body { bodies, found }) }
-    }
-
     /// Hits `body` at its centre of mass with `impulse` newton seconds, world axes, during the next substep.
     /// Several impulses before it add up. An impulse on a body that already moves along it at
     /// [`MAX_PUSHED_MPS`] has no effect.
@@ -167,9 +130,9 @@ impl Character {
     /// # Errors
     /// When there is no such body, or the impulse is not finite or over 1 MN s.
     pub fn impulse(&mut self, body: BodyId, impulse: Vec3) -> Result<(), PushError> {
-        self.check_body(body)?;
-        let sum = Vec3::from(self.pushes.impulses[body.index()]) + impulse;
-        at_most("an impulse", sum.length(), MOST_FORCE)?;
+        let waiting = self.pushes.impulses.get(body.index()).copied().unwrap_or_default();
+        let sum = Vec3::from(waiting) + impulse;
+        check_impulse(body, self.pushes.len(), sum)?;
         self.pushes.impulses[body.index()] = sum.to_array();
         self.pushes.under_way = true;
         Ok(())
@@ -181,8 +144,4 @@ fn outruns(data: &MjData<Arc<MjModel>>, layout: &Layout, id: usize, force: DVec3
     let reference = velocity_reference(data, layout);
     let (_, velocity) = velocity_at(data.cvel()[id], DVec3::from(data.xipos()[id]) - reference);
     velocity.dot(force) > f64::from(MAX_PUSHED_MPS) * force.length()
-}
-
-fn at_most(what: &'static str, found: f32, most: f32) -> Result<(), PushError> {
-    if (0.0..=most).contains(&found) { Ok(()) } else { Err(PushError::Size { what, most, found }) }
 }

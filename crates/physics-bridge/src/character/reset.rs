@@ -2,13 +2,10 @@
 
 use glam::{DQuat, Quat};
 use policy_core::Heading;
+use policy_core::contract::{Pose, PoseError, ROOT_QPOS};
 
 use super::Character;
 use crate::description::model::Model;
-use crate::description::pose::{Pose, PoseError, ROOT_QPOS};
-
-/// Speed at which the humanoid's policy that only walks can start, metres per second.
-pub const WALKING_START_MPS: f32 = 1.2;
 
 /// The model is of another kind of character.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
@@ -41,7 +38,7 @@ impl Character {
 
     /// Stands the character on the ground at a point, metres, world space, facing along `heading`, its lowest
     /// point touching the ground. All of it moves along `heading` at `speed_mps`: 0 for a policy that stands,
-    /// [`WALKING_START_MPS`] for one that only walks and would fall from a standstill. Allocates two short lists.
+    /// [`WALKING_START_MPS`](crate::WALKING_START_MPS) for one that only walks and would fall from a standstill. Allocates two short lists.
     ///
     /// # Errors
     /// When a number is not finite; the character is then unchanged.

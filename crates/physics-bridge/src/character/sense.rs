@@ -3,13 +3,14 @@
 use glam::{DMat3, DVec3, Vec3};
 use mujoco_rs::wrappers::mj_data::MjData;
 use mujoco_rs::wrappers::mj_model::MjModel;
+use policy_core::contract::Pose;
 use policy_core::{BodyId, CharacterState};
 use std::sync::Arc;
 
 use super::{Character, Contact};
+use crate::description::body_poses::{BodyPoses, rotation};
 use crate::description::layout::Layout;
 use crate::description::model::Model;
-use crate::description::pose::{BodyPoses, Pose, rotation};
 
 impl Character {
     /// Writes what a policy senses: motion of the body frames in world axes, joint velocities, and the

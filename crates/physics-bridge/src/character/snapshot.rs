@@ -4,11 +4,11 @@ use std::sync::Arc;
 
 use mujoco_rs::wrappers::mj_data::MjData;
 use mujoco_rs::wrappers::mj_model::MjModel;
+use policy_core::contract::Pose;
 
 use super::Character;
 use super::push::Pushes;
 use crate::description::model::{Model, STATE};
-use crate::description::pose::Pose;
 
 /// State of a [`Character`] at the end of a control tick: position, velocity, joint targets, pushes, the
 /// solver's start, time. About 2.5 kB for the humanoid. Settings and terrain belong to the [`Model`] and are not in it.

@@ -2,11 +2,11 @@
 //! Refuses a model with anything missing, of the wrong kind, or left over.
 
 use mujoco_rs::wrappers::mj_model::{MjModel, MjtBias, MjtGain, MjtObjBase};
+use policy_core::contract::{ROOT_QPOS, ROOT_QVEL};
 use policy_core::{ActuationContract, BodyId, JointActuation, Skeleton};
 
 use super::file::quoted;
 use super::model_error::ModelError;
-use super::pose::{ROOT_QPOS, ROOT_QVEL};
 use super::skeleton;
 
 /// Index maps from the skeleton's order into MuJoCo's arrays.

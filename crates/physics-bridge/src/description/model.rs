@@ -6,17 +6,14 @@ use std::sync::Arc;
 
 use mujoco_rs::wrappers::mj_data::{MjData, MjtState};
 use mujoco_rs::wrappers::mj_model::MjModel;
+use policy_core::contract::Pose;
 use policy_core::{ActuationContract, Skeleton};
 
 use super::ground::{Ground, HeightField};
 use super::layout::Layout;
-use super::pose::Pose;
 use super::settings::Settings;
 use super::shape::Shape;
 use super::terrain::Terrain;
-
-/// Control ticks per second, unless a pack says otherwise.
-pub const CONTROL_HZ: u32 = 30;
 
 /// Which numbers make up the whole state of a simulation.
 pub(crate) const STATE: u32 = MjtState::mjSTATE_INTEGRATION as u32;

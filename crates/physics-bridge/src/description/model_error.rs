@@ -2,10 +2,10 @@
 
 use std::path::PathBuf;
 
+use policy_core::contract::PoseError;
 use policy_core::training::SkeletonError;
 
 use super::file::quoted;
-use super::pose::PoseError;
 
 /// Why a [`Model`](crate::Model) can't be made of an MJCF.
 #[derive(Debug, thiserror::Error)]

@@ -4,8 +4,8 @@ use glam::{DMat3, DVec3, Quat, Vec3};
 use mujoco_rs::wrappers::mj_model::{MjModel, MjtGeomBase};
 use policy_core::BodyId;
 
+use super::body_poses::rotation;
 use super::layout::Layout;
-use super::pose::rotation;
 
 /// A primitive fixed to a body.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -1,11 +1,11 @@
 //! A character's pose in MuJoCo's terms: set, read, stood on the ground.
 
 use policy_core::Heading;
+use policy_core::contract::{Pose, PoseError, ROOT_QPOS, ROOT_QVEL};
 use rapier3d::dynamics::{JointAxis, MultibodyJointSet, RigidBodySet};
 use rapier3d::math::{Pose as RapierPose, Rotation, Vector};
 
 use super::{Articulation, Removed, Sets};
-use crate::pose::{Pose, PoseError, ROOT_QPOS, ROOT_QVEL};
 
 /// Why a character can't be posed in a world.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]

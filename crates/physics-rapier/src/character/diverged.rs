@@ -1,18 +1,7 @@
 //! What motion is implausible, and the error that says so.
 
+use policy_core::contract::{MAX_DEPTH_M, MAX_DISTANCE_M, MAX_SPEED_MPS, MAX_SPIN_RADPS};
 use policy_core::{CharacterState, Skeleton};
-
-/// Greatest speed of a body, metres per second.
-pub const MAX_SPEED_MPS: f32 = 50.0;
-
-/// Greatest angular velocity of a body, radians per second.
-pub const MAX_SPIN_RADPS: f32 = 200.0;
-
-/// How far below the ground a body's frame may be, metres.
-pub const MAX_DEPTH_M: f32 = 0.5;
-
-/// Greatest distance from the origin, metres.
-pub const MAX_DISTANCE_M: f32 = 10_000.0;
 
 /// What was implausible.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

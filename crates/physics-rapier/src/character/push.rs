@@ -2,42 +2,13 @@
 //!
 //! Both become forces. Rapier loses an impulse on a link of a multibody.
 
+use policy_core::contract::{PushError, check_impulse, check_push};
 use policy_core::glam::Vec3;
 use policy_core::{BodyId, Skeleton};
 use rapier3d::dynamics::{RigidBodyHandle, RigidBodySet};
 
 use super::Character;
 use crate::convert::vector;
-
-/// Why a push is refused.
-#[derive(Clone, Debug, PartialEq, thiserror::Error)]
-#[non_exhaustive]
-pub enum PushError {
-    /// The character has no such body.
-    #[error("expected one of {bodies} bodies, found index {found}")]
-    Body {
-        /// Bodies of the character.
-        bodies: usize,
-        /// Index of the body.
-        found: usize,
-    },
-    /// A number is not finite, or too large to mean anything.
-    #[error("expected {what} of at most {most} in size, found {found}")]
-    Size {
-        /// `a force` in newtons, `an impulse` in newton seconds or `a duration` in seconds.
-        what: &'static str,
-        /// The limit.
-        most: f32,
-        /// Its size.
-        found: f32,
-    },
-}
-
-/// Largest force, newtons, and largest impulse, newton seconds.
-const MOST_FORCE: f32 = 1e6;
-
-/// Longest push, seconds.
-const MOST_SECS: f32 = 3600.0;
 
 /// The pushes under way, one entry for each body. World axes, at the centre of mass of each body.
 pub(super) struct Pushes {
@@ -95,9 +66,7 @@ impl Character {
     /// When there is no such body, a number is not finite, the force is over 1 MN, or the duration negative or over
     /// an hour.
     pub fn push(&mut self, body: BodyId, force: Vec3, secs: f32) -> Result<(), PushError> {
-        self.check_body(body)?;
-        at_most("a force", force.length(), MOST_FORCE)?;
-        at_most("a duration", secs, MOST_SECS)?;
+        check_push(body, self.pushes.forces.len(), force, secs)?;
         self.pushes.forces[body.index()] = force;
         self.pushes.steps_left[body.index()] = (secs / self.world.integration_parameters.dt).round() as u32;
         Ok(())
@@ -109,19 +78,9 @@ impl Character {
     /// # Errors
     /// When there is no such body, or the impulse is not finite or over 1 MN s.
     pub fn impulse(&mut self, body: BodyId, impulse: Vec3) -> Result<(), PushError> {
-        self.check_body(body)?;
-        let sum = self.pushes.impulses[body.index()] + impulse;
-        at_most("an impulse", sum.length(), MOST_FORCE)?;
+        let sum = self.pushes.impulses.get(body.index()).copied().unwrap_or_default() + impulse;
+        check_impulse(body, self.pushes.impulses.len(), sum)?;
         self.pushes.impulses[body.index()] = sum;
         Ok(())
     }
-
-    fn check_body(&self, body: BodyId) -> Result<(), PushError> {
-        let (found, bodies) = (body.index(), self.pushes.forces.len());
-        if found < bodies { Ok(()) } else { Err(PushError::Body { bodies, found }) }
-    }
-}
-
-fn at_most(what: &'static str, found: f32, most: f32) -> Result<(), PushError> {
-    if (0.0..=most).contains(&found) { Ok(()) } else { Err(PushError::Size { what, most, found }) }
 }

@@ -1,5 +1,6 @@
 //! What a loaded MJCF says of motors, rate and standing pose, checked.
 
+use policy_core::contract::{Pose, PoseError, ROOT_QPOS};
 use policy_core::training::SkeletonJoint;
 use policy_core::{JointActuation, Skeleton};
 use rapier3d::dynamics::JointAxesMask;
@@ -7,7 +8,6 @@ use rapier3d_mjcf::MjcfRobot;
 use rapier3d_mjcf::mjcf_rs::extras::ActuatorKind;
 
 use crate::model_error::ModelError;
-use crate::pose::{Pose, PoseError, ROOT_QPOS};
 use crate::skeleton::{Places, kind};
 
 /// Name of the keyframe in which a character stands.

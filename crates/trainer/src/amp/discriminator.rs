@@ -1,13 +1,14 @@
 //! A discriminator that learns beside the policy, and the style reward it gives.
 
+use random::Rng;
 use rayon::prelude::*;
 
 use super::config::{DiscriminatorConfig, GRADIENT_PENALTY, LEARNING_RATE, REPLAY_ROWS, WEIGHT_DECAY};
+use super::noise::NoiseTable;
 use super::replay::Replay;
 use crate::env::Demonstrations;
 use crate::nn::{Adam, DiscriminatorLoss, DiscriminatorPass, Network, sigmoid};
 use crate::ppo::BatchEvaluator;
-use crate::{NoiseTable, Rng};
 
 /// `-ln(max(1 - sigmoid(logit), 1e-4))`: 0 for what is surely simulated, 9.2 for what is surely a demonstration.
 #[must_use]

@@ -2,6 +2,7 @@
 
 mod config;
 mod discriminator;
+mod noise;
 mod replay;
 
 pub use config::DiscriminatorConfig;

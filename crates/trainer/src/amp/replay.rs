@@ -1,6 +1,6 @@
 //! Simulated rows of earlier iterations, so that a discriminator does not forget what it once told apart.
 
-use crate::Rng;
+use random::Rng;
 
 /// A ring of discriminator inputs. Grows as it fills.
 #[derive(Clone, Debug)]

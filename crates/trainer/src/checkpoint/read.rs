@@ -2,12 +2,12 @@
 
 use std::collections::HashMap;
 
+use files::quoted;
 use safetensors::tensor::SafeTensors;
 
 use super::numbers::floats;
 use super::{Checkpoint, EMA, FORMAT, Progress, Trained};
 use crate::nn::{Adam, Network};
-use crate::text::quoted;
 
 /// [`EMA`] in version 1.
 const EMA_OF_VERSION_1: &str = "average";

@@ -2,7 +2,8 @@
 
 use anyhow::Result;
 use clap::Args;
-use trainer::compare::costs;
+use evaluation::compare::costs;
+use trainer::training::POLICY_HIDDEN;
 
 use super::output::say;
 
@@ -17,7 +18,7 @@ pub(crate) struct Arguments {
 /// Prints the table as Markdown.
 pub(crate) fn run(arguments: &Arguments) -> Result<()> {
     say(format_args!("| control step | networks | multiply-adds | microseconds |\n|---|---|---|---|"))?;
-    for cost in costs(arguments.repeats)? {
+    for cost in costs(POLICY_HIDDEN, arguments.repeats)? {
         let widths = |n: &Vec<usize>| n.iter().map(ToString::to_string).collect::<Vec<_>>().join("-");
         let networks: Vec<String> = cost.networks.iter().map(widths).collect();
         let (name, count, time) = (&cost.name, cost.multiply_adds, cost.microseconds);

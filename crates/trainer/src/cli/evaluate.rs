@@ -7,12 +7,12 @@ use std::sync::Arc;
 
 use anyhow::{Context, Result};
 use clap::Args;
+use clips::ClipFolder;
+use evaluation::{Effort, PlayerReport, Progress, Section, clip_states, evaluate, plots, table};
+use files::write_atomically;
 use physics_bridge::Model;
 use policy_core::{CharacterPack, CharacterState, ControllerConfig, TurnAssist};
-use trainer::clip::ClipFolder;
-use trainer::evaluate::{Effort, PlayerReport, Progress, Section, clip_states, evaluate, plots, table};
 use trainer::recipe::Recipe;
-use trainer::storage::write_atomically;
 
 use super::output::say;
 

@@ -4,10 +4,10 @@ use std::path::PathBuf;
 
 use anyhow::{Context, Result};
 use clap::Args;
+use files::read_bounded;
 use policy_core::CharacterPack;
 use policy_core::format::MAX_PACK_BYTES;
 use trainer::onnx::{DEPLOYMENT_FILE, export};
-use trainer::storage::read_bounded;
 
 use super::output::say;
 

@@ -4,8 +4,8 @@ use std::path::PathBuf;
 
 use anyhow::{Context, Result};
 use clap::Args;
+use files::write_atomically;
 use trainer::onnx::import;
-use trainer::storage::write_atomically;
 
 use super::export::load;
 use super::output::say;

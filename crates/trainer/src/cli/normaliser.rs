@@ -5,8 +5,8 @@ use std::path::{Path, PathBuf};
 
 use anyhow::{Context, Result};
 use clap::Args;
+use clips::ClipFolder;
 use physics_bridge::Model;
-use trainer::clip::ClipFolder;
 use trainer::env::Normalisers;
 use trainer::normaliser_file;
 use trainer::recipe::Recipe;

@@ -5,7 +5,7 @@ use std::fmt::Display;
 use std::io::Write as _;
 
 use anyhow::{Context, Result};
-use trainer::text::printable;
+use files::printable;
 
 /// Longest message, characters.
 const MOST_CHARACTERS: usize = 2000;

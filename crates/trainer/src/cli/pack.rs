@@ -6,13 +6,13 @@ use std::time::Instant;
 
 use anyhow::{Context, Result, ensure};
 use clap::Args;
+use evaluation::{measure_get_up, measure_skill};
+use files::{read_bounded, write_atomically};
 use physics_bridge::Model;
 use policy_core::{CharacterPack, SkillId};
 use trainer::checkpoint::CheckpointError;
 use trainer::env::Normalisers;
-use trainer::evaluate::{measure_get_up, measure_skill};
 use trainer::pack::{Agreement, PackPlan, PlannedPolicy, TrainedSkill, bind, distil};
-use trainer::storage::{read_bounded, write_atomically};
 use trainer::workspace::CheckpointFile;
 
 use super::output::say;

@@ -5,14 +5,14 @@ use std::sync::Arc;
 
 use anyhow::{Context, Result};
 use clap::Args;
+use clips::ClipFolder;
+use evaluation::strip::{Row, draw};
+use evaluation::trial::TICK_SECS;
+use evaluation::{STANCE_METRES, clip_states, pose_error, watch, watch_layers, watch_skill};
+use files::write_atomically;
 use physics_bridge::Model;
 use policy_core::{CharacterPack, CharacterState, NodeId, SkillId};
-use trainer::clip::ClipFolder;
-use trainer::env::DT_SECS;
-use trainer::evaluate::{STANCE_METRES, clip_states, pose_error, watch, watch_layers, watch_skill};
 use trainer::recipe::Recipe;
-use trainer::storage::write_atomically;
-use trainer::strip::{Row, draw};
 
 use super::output::say;
 
@@ -91,7 +91,7 @@ fn episodic_skills(
                     .cloned()
                     .collect()
             };
-            let secs = |states: &[CharacterState]| states.len() as f32 * DT_SECS;
+            let secs = |states: &[CharacterState]| states.len() as f32 * TICK_SECS;
             let rows = [
                 Row {
                     caption: format!("clip {}, {:.1} s", clip.name, secs(states)),

@@ -6,11 +6,10 @@ use std::process::Command;
 
 use anyhow::{Context, Result, bail};
 use clap::Args;
+use clips::{ClipFolder, Fitted, fit, load_file};
+use files::write_atomically;
 use physics_bridge::Model;
 use serde::Serialize;
-use trainer::clip::{ClipFolder, load_file};
-use trainer::env::{Fitted, fit};
-use trainer::storage::write_atomically;
 
 use super::output::say;
 
@@ -102,7 +101,7 @@ impl Drop for Scratch {
 
 /// Writes the poses of the control ticks.
 fn write(fitted: &Fitted, clip: &str, path: &Path) -> Result<()> {
-    let stride = trainer::clip::TICK_STRIDE;
+    let stride = clips::TICK_STRIDE;
     let qpos = fitted.motion.poses.iter().step_by(stride).map(|p| &p.qpos[..]).collect();
     let hz = 1.0 / (fitted.motion.dt_secs * stride as f64);
     let poses = Poses { format: "policy-space poses", clip, hz, qpos };

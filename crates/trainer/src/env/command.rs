@@ -4,9 +4,9 @@ use glam::Vec2;
 use physics_bridge::CONTROL_HZ;
 use policy_core::training::{FallDetector, Heights, RISE_SECONDS, TARGET_RANGE_METRES, fall_height};
 use policy_core::{GraphPosition, NodeId, PathId};
+use random::Rng;
 
 use super::graph::TrainingGraph;
-use crate::Rng;
 
 mod config;
 

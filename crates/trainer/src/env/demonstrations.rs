@@ -1,14 +1,13 @@
 //! Demonstration clips: fitted to the body, lifted, run through the physics' forward kinematics, turned into normalised
 //! discriminator frames and states for reference-state initialisation.
 
+use clips::{Clip, FitError, Fitted, MOTION_HZ, Motion, TICK_STRIDE, fit};
 use physics_bridge::{Model, Pose};
 use policy_core::training::{FRAME_AGES, HISTORY_LEN, Normaliser, discriminator_frame_into};
 use policy_core::{CharacterState, JointActuation};
+use random::Rng;
 
-use super::fitted::{Fitted, SourceError, fit};
 use super::tracking::TrackedState;
-use crate::Rng;
-use crate::clip::{Clip, MOTION_HZ, Motion, TICK_STRIDE};
 
 /// One fitted clip with the frames a discriminator sees.
 #[derive(Clone, Debug)]
@@ -61,7 +60,7 @@ impl Demonstrations {
         clips: &[(Clip, f32, bool)],
         model: &Model,
         normaliser: &Normaliser,
-    ) -> Result<Self, SourceError> {
+    ) -> Result<Self, FitError> {
         let frame_len = model.skeleton().frame_len();
         let mut sources = Vec::new();
         for (clip, share, mirrored) in clips {
@@ -221,8 +220,8 @@ mod tests {
 
     use glam::Quat;
 
+    use super::super::made_up::{body, still};
     use super::*;
-    use crate::clip::tests::{body, still};
 
     #[test]
     fn the_nearest_moment_is_that_of_the_same_pose() {

@@ -5,6 +5,7 @@ use glam::Vec2;
 use physics_bridge::{Character, Model};
 use policy_core::training::{ActionScaling, FrameHistory, Heights, discriminator_frame_into};
 use policy_core::{BodyId, CharacterState, Heading, JointTargets, Skeleton};
+use random::Rng;
 
 use super::command::{Command, DT_SECS};
 use super::config::EnvironmentConfig;
@@ -16,7 +17,6 @@ use super::reset::{HandOver, PreFailureStates};
 use super::reward::{Pace, RewardTerms, Task, foot_slip_mps, standing_reward, target_reward};
 use super::termination::TerminationHeights;
 use super::track_clip::Tracking;
-use crate::Rng;
 use crate::ppo::Done;
 
 /// What all environments share in a phase of training.

@@ -1,10 +1,10 @@
 //! Deterministic intervals: stretches of an episode in which a character acts by the policy's mean, as in a game. What
 //! fails there fails in a game too. Learning continues from the states that such a stretch leads to.
 
+use random::Rng;
 use serde::{Deserialize, Serialize};
 
 use super::command::DT_SECS;
-use crate::Rng;
 
 /// When actions have noise.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]

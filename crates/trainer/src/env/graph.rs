@@ -2,10 +2,10 @@
 
 use policy_core::training::{GraphError, Path};
 use policy_core::{GraphPosition, NodeId, PathId, PolicyGraph};
+use random::Rng;
 
 use super::command::INTENT_LEN;
 use super::termination::TerminationRule;
-use crate::Rng;
 
 mod node;
 

@@ -9,9 +9,9 @@ mod demonstrations;
 #[expect(clippy::module_inception, reason = "the environment itself, beside its parts")]
 mod env;
 mod exploration;
-mod feet;
-mod fitted;
 mod graph;
+#[cfg(test)]
+mod made_up;
 mod normalisers;
 mod observation;
 mod randomisation;
@@ -27,10 +27,9 @@ pub use config::EnvironmentConfig;
 pub use demonstrations::{ClipPhase, Demonstrations, ReferenceState};
 pub use env::{Env, EnvContext, Episode};
 pub use exploration::ExplorationConfig;
-pub use fitted::{Fitted, SourceError, fit};
 pub use graph::{GraphNode, TrainingGraph};
 pub use normalisers::Normalisers;
-pub use randomisation::{PUSH_SECS, RandomisationConfig};
+pub use randomisation::RandomisationConfig;
 pub use reset::{HandOver, HandOverConfig, ResetConfig};
 pub use reward::{Pace, RewardConfig, RewardTerms, Task, foot_slip_mps, standing_reward, target_reward};
 pub use termination::{Termination, TerminationConfig, TerminationHeights, TerminationRule};

@@ -4,8 +4,7 @@ use physics_bridge::Model;
 use policy_core::observe_into;
 use policy_core::training::{LEAST_DEVIATION, Normaliser, discriminator_frame_into};
 
-use super::fitted::{Fitted, SourceError, fit};
-use crate::clip::Clip;
+use clips::{Clip, FitError, Fitted, fit};
 
 /// The normalisers of the whole graph.
 #[derive(Clone, Debug, PartialEq)]
@@ -24,7 +23,7 @@ impl Normalisers {
     ///
     /// # Panics
     /// When there is no clip.
-    pub fn from_clips(clips: &[Clip], model: &Model) -> Result<Self, SourceError> {
+    pub fn from_clips(clips: &[Clip], model: &Model) -> Result<Self, FitError> {
         assert!(!clips.is_empty(), "a normaliser needs a clip");
         let skeleton = model.skeleton();
         let mut observation = Moments::new(skeleton.observation_len());

@@ -10,7 +10,7 @@ use super::command::DT_SECS;
 use super::env::{Env, EnvContext};
 
 /// Length of a push, seconds.
-pub const PUSH_SECS: f32 = 0.2;
+const PUSH_SECS: f32 = 0.2;
 
 /// From crest to crest of the waves, metres.
 const WAVELENGTH_METRES: f32 = 6.0;

@@ -1,8 +1,10 @@
 //! Where episodes start: reference-state initialisation in clips, standing, limp on the ground, before an earlier failure, or
 //! where an episodic skill hands over.
 
+use clips::placed;
 use physics_bridge::{Pose, Terrain, WALKING_START_MPS};
 use policy_core::Heading;
+use random::limp::{go_limp, random_attitude};
 use serde::{Deserialize, Serialize};
 
 use super::command::Command;
@@ -10,8 +12,6 @@ use super::demonstrations::ReferenceState;
 use super::env::{Env, EnvContext};
 use super::exploration::Exploration;
 use super::track_clip::{Tracking, own_clips};
-use crate::clip::placed;
-use crate::limp::{go_limp, random_attitude};
 
 mod hand_over;
 mod pre_failure;

@@ -2,15 +2,15 @@ use std::path::Path;
 
 use glam::{Quat, Vec3};
 use physics_bridge::Model;
+use random::Rng;
 
 use super::super::config::EnvironmentConfig;
 use super::super::demonstrations::Demonstrations;
 use super::super::graph::{GraphNode, TrainingGraph};
+use super::super::made_up::still;
 use super::super::normalisers::Normalisers;
 use super::super::termination::TerminationHeights;
 use super::*;
-use crate::Rng;
-use crate::clip::tests::still;
 
 #[test]
 fn a_standing_start_is_upright_and_moves_ahead() {

@@ -3,11 +3,11 @@
 
 use physics_bridge::Model;
 use policy_core::training::ActionScaling;
+use random::Rng;
 use rayon::prelude::*;
 
 use super::env::{Env, EnvContext, Episode};
 use super::reward::RewardTerms;
-use crate::Rng;
 use crate::ppo::Done;
 
 /// Nodes that a report tells apart; with more of them the rest counts as the last.

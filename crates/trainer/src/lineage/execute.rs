@@ -3,13 +3,13 @@
 use std::path::Path;
 
 use anyhow::{Context, Result, bail};
+use files::read_text_bounded;
 use serde::Serialize;
 
 use super::{AverageStep, Lineage, MOST_BYTES, STEP_FILE, Step, TrainStep};
 use crate::average::average;
 use crate::recipe::Recipe;
 use crate::run::{Existing, Run, RunError, RunFolder, holds_a_run, newest_checkpoint};
-use crate::storage::read_text_bounded;
 use crate::workspace::{Start, Workspace};
 
 impl Lineage {

@@ -1,5 +1,6 @@
+use random::Rng;
+
 use super::*;
-use crate::rng::Rng;
 
 const SIZES: [usize; 4] = [7, 10, 6, 1];
 const ROWS: usize = 12;

@@ -3,7 +3,7 @@
 
 use std::ops::Range;
 
-use crate::rng::Rng;
+use random::Rng;
 
 /// Sizes and parameters of a dense network.
 #[derive(Clone, Debug, PartialEq)]

@@ -1,5 +1,6 @@
+use random::Rng;
+
 use super::*;
-use crate::rng::Rng;
 
 const SIZES: [usize; 4] = [6, 9, 5, 3];
 

@@ -198,9 +198,9 @@ impl Deployment {
     /// # Errors
     /// What was found instead, in words.
     pub fn from_json(json: &str) -> Result<Self, String> {
-        let read: Self = serde_json::from_str(json).map_err(|e| crate::text::quoted(&e.to_string()))?;
+        let read: Self = serde_json::from_str(json).map_err(|e| files::quoted(&e.to_string()))?;
         if read.format != FORMAT || read.version != VERSION {
-            let format = crate::text::quoted(&read.format);
+            let format = files::quoted(&read.format);
             return Err(format!("format {format:?} of version {}", read.version));
         }
         Ok(read)

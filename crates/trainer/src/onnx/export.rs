@@ -9,7 +9,7 @@ use super::deployment::{DEPLOYMENT_FILE, Deployment, MJCF_FILE};
 use super::error::OnnxError;
 use super::graph::{GraphBuilder, Size};
 use super::{ACTION, BLEND, OBSERVATION};
-use crate::storage::write_atomically;
+use files::write_atomically;
 
 /// Writes one model for each policy and path, the body where the pack has one, and the deployment file. Makes the folder.
 /// Returns the names of the files.

@@ -11,8 +11,8 @@ use super::OPSET;
 use super::deployment::{DEPLOYMENT_FILE, Deployment, PolicyFile};
 use super::error::OnnxError;
 use super::proto::{GraphProto, ModelProto, NodeProto};
-use crate::storage::{read_bounded, read_text_bounded};
-use crate::text::quoted;
+use files::quoted;
+use files::{read_bounded, read_text_bounded};
 
 /// Largest model, bytes.
 const MOST_MODEL_BYTES: u64 = 256 << 20;

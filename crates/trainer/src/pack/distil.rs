@@ -5,11 +5,11 @@ use std::sync::Arc;
 
 use physics_bridge::Model;
 use policy_core::{CharacterPack, SkillId};
+use random::Rng;
 use rayon::prelude::*;
 
 use super::TrainedSkill;
 use super::rollouts::inputs;
-use crate::Rng;
 use crate::nn::{Adam, Network, Pass, sigmoid};
 use crate::ppo::BatchEvaluator;
 

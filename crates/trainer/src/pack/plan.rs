@@ -2,12 +2,12 @@
 
 use std::path::Path;
 
+use files::quoted;
+use files::read_text_bounded;
 use policy_core::format::{CreditEntry, EdgeEntry, PathEntry, SkillEntry};
 use serde::Deserialize;
 
 use super::BindError;
-use crate::storage::read_text_bounded;
-use crate::text::quoted;
 
 /// Largest plan, bytes.
 const MOST_BYTES: u64 = 1 << 20;

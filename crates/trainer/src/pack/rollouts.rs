@@ -10,8 +10,8 @@ use policy_core::{
 };
 use rayon::prelude::*;
 
-use crate::Rng;
-use crate::limp::{go_limp, lift_anyhow};
+use random::Rng;
+use random::limp::{go_limp, lift_anyhow};
 
 /// Seconds at the entry node before a skill starts, of lying limp before a recovery, and after the hand-over.
 const BEFORE_SECS: f32 = 2.0;
@@ -19,9 +19,6 @@ const AFTER_SECS: f32 = 2.0;
 
 /// Seconds of a whole rollout at most.
 const MOST_SECS: f32 = 14.0;
-
-/// Height that a limp character is dropped from, metres above the height of its root at rest in the model.
-const DROP_METRES: f32 = 0.8;
 
 /// Normalised discriminator inputs of every tick of so many rollouts of a skill, `[ticks][inputs]`.
 pub(super) fn inputs(model: &Model, pack: &Arc<CharacterPack>, skill: SkillId, episodes: usize) -> Vec<f32> {
@@ -123,7 +120,7 @@ impl Rollout {
 
     /// Drops the character in a random attitude with loose joints; `None` when the physics diverged.
     fn drop_limp(&mut self) -> Option<()> {
-        lift_anyhow(&mut self.character, DROP_METRES, &mut self.rng).ok()?;
+        lift_anyhow(&mut self.character, Vec2::ZERO, &mut self.rng).ok()?;
         for _ in 0..(BEFORE_SECS / self.dt_secs) as usize {
             go_limp(&mut self.character);
             self.character.step().ok()?;

@@ -4,9 +4,9 @@ use std::sync::Arc;
 
 use anyhow::{Context, Result};
 use policy_core::{Controller, ControllerConfig, SkillId};
+use random::Rng;
 
 use super::{bodies, critic_sizes};
-use crate::Rng;
 use crate::amp::DiscriminatorLearner;
 use crate::env::{Demonstrations, GraphNode, HandOver, TrainingGraph};
 use crate::nn::Network;

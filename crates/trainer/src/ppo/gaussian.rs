@@ -34,7 +34,7 @@ mod tests {
     #[test]
     fn divergence_is_the_mean_difference_of_log_densities() {
         let (p, q, s) = ([0.2, -0.1], [0.05, 0.3], 0.4);
-        let mut rng = crate::Rng::new(4, 0);
+        let mut rng = random::Rng::new(4, 0);
         let n = 100_000;
         let mut total = 0.0_f64;
         for _ in 0..n {

@@ -1,11 +1,12 @@
 //! Actor and critic, and what they do in a rollout.
 
+use random::Rng;
+
 use super::batch::BatchEvaluator;
 use super::config::{EMA_DECAY, GAE_LAMBDA, PpoConfig};
 use super::lane::Lane;
 use super::rollout::Rollout;
 use crate::nn::{Adam, Line, Network};
-use crate::rng::Rng;
 
 /// A policy and its optimiser.
 #[derive(Clone, Debug)]

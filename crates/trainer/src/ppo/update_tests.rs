@@ -1,6 +1,7 @@
+use random::Rng;
+
 use super::super::{Done, PpoConfig};
 use super::*;
-use crate::Rng;
 use crate::nn::Network;
 
 const CHARACTERS: usize = 64;

@@ -2,13 +2,13 @@
 
 use std::path::Path;
 
+use files::quoted;
+use files::read_text_bounded;
 use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
 use toml::{Table, Value};
 
 use super::{Phase, Recipe, RecipeError};
-use crate::storage::read_text_bounded;
-use crate::text::quoted;
 
 /// Largest file, bytes.
 const MOST_BYTES: u64 = 1 << 20;

@@ -2,10 +2,10 @@
 
 use std::path::Path;
 
+use files::quoted;
 use toml::Value;
 
 use super::{Recipe, RecipeError};
-use crate::text::quoted;
 
 /// Field, least and largest value. A star stands for any name, as in tables of bodies.
 const RANGES: &[(&str, f64, f64)] = &[

@@ -2,10 +2,11 @@
 
 use std::path::{Path, PathBuf};
 
+use files::{remove_unfinished, write_atomically};
+
 use super::RunError;
 use super::lock::{Holder, RunLock};
 use crate::checkpoint::{Checkpoint, CheckpointError};
-use crate::storage::{remove_unfinished, write_atomically};
 
 /// The newest checkpoint.
 pub const CHECKPOINT: &str = "checkpoint.safetensors";

@@ -1,7 +1,8 @@
 use std::collections::HashMap;
 
+use random::Rng;
+
 use super::*;
-use crate::Rng;
 use crate::checkpoint::Trained;
 use crate::nn::{Adam, Network};
 

@@ -30,7 +30,7 @@ impl ParameterMap {
                 layers
                     .iter()
                     .map(|layer| {
-                        let at = components.project_direction(layer, start);
+                        let at = components.project_part(start, layer);
                         start += layer.len();
                         at
                     })

@@ -15,6 +15,7 @@ use crate::gpu::Gpu;
 use crate::render::{OffScreen, RenderConfig, Renderer, Scene};
 use crate::scene_setup::{Shown, Trail, set_scene};
 use crate::sim::{SimConfig, Simulation, model_of};
+use crate::text::counted;
 
 /// Characters in the crowd that is timed.
 const CROWD: usize = 64;
@@ -84,13 +85,13 @@ pub fn crowd(bench: Bench) -> anyhow::Result<String> {
         return Ok(object.to_string());
     }
     Ok(format!(
-        "characters in real time, {:.0} Hz control, {:.0} Hz physics, {} threads
+        "characters in real time, {:.0} Hz control, {:.0} Hz physics, {}
   with controllers     {full:8.0}
   stepping alone       {bare:8.0}   ({:.1} %)
   share of the policy  {:8.2} %",
         model.control_hz(),
         1.0 / model.timestep_secs(),
-        crowd.threads(),
+        counted(crowd.threads() as u64, "thread"),
         100.0 * full / bare,
         100.0 * share,
     ))

@@ -2,6 +2,8 @@
 
 use serde::Serialize;
 
+use crate::text::counted;
+
 /// The report, as written to the file.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Report {
@@ -52,16 +54,12 @@ impl Report {
         format!(
             "{:.1} s, {}: upright {:.1} %, {:.2} m, {}, {:.2} m/s, state {}",
             self.seconds,
-            count(self.characters as u64, "character"),
+            counted(self.characters as u64, "character"),
             100.0 * self.upright_fraction,
             self.distance_m,
-            count(self.falls, "fall"),
+            counted(self.falls, "fall"),
             self.mean_speed_mps,
             self.state_hash,
         )
     }
-}
-
-fn count(number: u64, what: &str) -> String {
-    format!("{number} {what}{}", if number == 1 { "" } else { "s" })
 }

@@ -4,6 +4,7 @@ use egui::{Slider, Ui};
 
 use crate::app::{App, Clock, ViewerCommand};
 use crate::sim::{GroundKind, LEAST_FRICTION, MAX_CHARACTERS};
+use crate::text::noun;
 
 pub(super) fn show(ui: &mut Ui, app: &App, commands: &mut Vec<ViewerCommand>) {
     time(ui, app, commands);
@@ -17,7 +18,8 @@ pub(super) fn show(ui: &mut Ui, app: &App, commands: &mut Vec<ViewerCommand>) {
         }
     });
     let mut characters = app.sim.config().characters;
-    let slider = Slider::new(&mut characters, 1..=MAX_CHARACTERS).logarithmic(true).text("characters");
+    let label = noun(characters as u64, "character");
+    let slider = Slider::new(&mut characters, 1..=MAX_CHARACTERS).logarithmic(true).text(label);
     // A crowd is made anew for every number, so only where the drag ends.
     let response = ui.add(slider.update_while_editing(false));
     if response.changed() {

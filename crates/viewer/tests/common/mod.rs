@@ -1,6 +1,8 @@
 //! What the tests of this folder share.
 #![allow(dead_code, reason = "each test file uses a part")]
 
+pub mod harness;
+
 use std::sync::Arc;
 
 use physics_bridge::Model;

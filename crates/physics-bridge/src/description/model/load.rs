@@ -4,13 +4,13 @@ use std::path::Path;
 use std::sync::Arc;
 
 use mujoco_rs::wrappers::mj_model::{MjModel, MjtObjBase};
+use policy_core::contract::{CONTROL_HZ, Pose};
 use policy_core::{CharacterPack, Skeleton};
 
-use super::{CONTROL_HZ, Model, Shared, Source};
+use super::{Model, Shared, Source};
 use crate::description::ground::Ground;
 use crate::description::layout::Layout;
 use crate::description::model_error::ModelError;
-use crate::description::pose::Pose;
 use crate::description::settings::Settings;
 use crate::description::shape::shapes;
 use crate::description::terrain::Terrain;

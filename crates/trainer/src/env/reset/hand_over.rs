@@ -71,11 +71,11 @@ mod tests {
     use super::super::super::config::EnvironmentConfig;
     use super::super::super::demonstrations::Demonstrations;
     use super::super::super::graph::{GraphNode, TrainingGraph};
+    use super::super::super::made_up::still;
     use super::super::super::normalisers::Normalisers;
     use super::super::super::termination::TerminationHeights;
     use super::*;
-    use crate::Rng;
-    use crate::clip::tests::still;
+    use random::Rng;
 
     #[test]
     fn the_shipped_skill_hands_over_a_character_that_stands() {

@@ -2,9 +2,9 @@
 
 use physics_bridge::{Character, Snapshot};
 use policy_core::training::FrameHistory;
+use random::Rng;
 
 use super::super::command::Command;
-use crate::Rng;
 
 /// Ticks between the states that a character keeps of an episode.
 const EVERY_TICKS: u32 = 15;

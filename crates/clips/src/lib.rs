@@ -1,0 +1,175 @@
+//! Demonstration clips: files of motion, read, resampled, fitted to the joints of a skeleton and put on the ground.
+//!
+//! Training imitates clips and evaluation compares with them. A clip must have a body of the same name for each body of
+//! the skeleton that has hinges; retargeting is done elsewhere.
+
+mod deepmimic;
+mod error;
+mod feet;
+mod fitted;
+mod folder;
+mod humanoid;
+mod joint_fit;
+mod json;
+mod motion;
+mod npy;
+mod pickle;
+mod pickle_machine;
+
+pub use error::ClipError;
+pub use fitted::{FitError, Fitted, fit};
+pub use folder::{ClipFolder, MOTIONS_VARIABLE, load_file};
+pub use joint_fit::JointFit;
+pub use motion::{MOTION_HZ, Motion, TICK_STRIDE, placed};
+
+use std::sync::Arc;
+
+use glam::{Quat, Vec3};
+
+/// Longest clip that is read, in frames.
+pub const MAX_FRAMES: usize = 100_000;
+
+/// A clip as its file has it. Metres, seconds, z up, facing along x.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Clip {
+    /// Name, that of its file without the ending.
+    pub name: String,
+    /// True when the last frame continues with the first, the root moved on.
+    pub looping: bool,
+    /// Time of every frame, ascending from zero.
+    pub times: Vec<f32>,
+    /// Names of the bodies, the root first.
+    pub bodies: Arc<[String]>,
+    /// Position of the root in the world.
+    pub root_positions: Vec<Vec3>,
+    /// Rotation of every body in its parent's frame, `[frames][bodies]`; that of the root in the world.
+    pub local_rotations: Vec<Vec<Quat>>,
+}
+
+impl Clip {
+    /// Checks what every format has in common: lengths, finite numbers, ascending times, unit quaternions.
+    ///
+    /// # Errors
+    /// Names the first thing that is wrong.
+    pub fn checked(mut self) -> Result<Self, ClipError> {
+        let name = || self.name.clone();
+        let frames = self.times.len();
+        if !(2..=MAX_FRAMES).contains(&frames) {
+            return Err(ClipError::FrameCount { clip: name(), found: frames });
+        }
+        for (field, found) in
+            [("root positions", self.root_positions.len()), ("local rotations", self.local_rotations.len())]
+        {
+            if found != frames {
+                return Err(ClipError::Lengths { clip: name(), field, expected: frames, found });
+            }
+        }
+        for frame in 0..frames {
+            let (expected, found) = (self.bodies.len(), self.local_rotations[frame].len());
+            if found != expected || found == 0 {
+                return Err(ClipError::Lengths {
+                    clip: name(),
+                    field: "rotations of a frame",
+                    expected,
+                    found,
+                });
+            }
+            let finite = self.times[frame].is_finite()
+                && self.root_positions[frame].is_finite()
+                && self.root_positions[frame].abs().max_element() < 1e4
+                && self.local_rotations[frame].iter().all(|q| q.is_finite());
+            if !finite {
+                return Err(ClipError::NotFinite { clip: name(), frame });
+            }
+            if frame > 0 && self.times[frame] <= self.times[frame - 1] {
+                return Err(ClipError::Times { clip: name(), frame });
+            }
+            let length_error = |q: &Quat| (q.length() - 1.0).abs() > 0.1;
+            if let Some(body) = self.local_rotations[frame].iter().position(length_error) {
+                return Err(ClipError::Quaternion { clip: name(), frame, body });
+            }
+        }
+        let start = self.times[0];
+        self.times.iter_mut().for_each(|t| *t -= start);
+        for rotations in &mut self.local_rotations {
+            rotations.iter_mut().for_each(|q| *q = q.normalize());
+        }
+        if self.duration() > 600.0 {
+            return Err(ClipError::Duration { clip: self.name.clone(), found: self.duration() });
+        }
+        Ok(self)
+    }
+
+    /// Seconds from the first to the last frame.
+    #[must_use]
+    pub fn duration(&self) -> f32 {
+        self.times[self.times.len() - 1]
+    }
+
+    /// Root position and local rotations at a time within the clip, by interpolation.
+    #[must_use]
+    pub fn sample(&self, time: f32) -> (Vec3, Vec<Quat>) {
+        let last = self.times.len() - 1;
+        let after = self.times.partition_point(|t| *t <= time).clamp(1, last);
+        let (a, b) = (after - 1, after);
+        let t = ((time - self.times[a]) / (self.times[b] - self.times[a])).clamp(0.0, 1.0);
+        let pairs = self.local_rotations[a].iter().zip(&self.local_rotations[b]);
+        let rotations = pairs.map(|(a, b)| a.slerp(*b, t)).collect();
+        (self.root_positions[a].lerp(self.root_positions[b], t), rotations)
+    }
+
+    /// How far one cycle moves the root, horizontally.
+    #[must_use]
+    pub fn cycle_offset(&self) -> Vec3 {
+        (self.root_positions[self.root_positions.len() - 1] - self.root_positions[0])
+            * Vec3::new(1.0, 1.0, 0.0)
+    }
+
+    /// Every frame this much of the way, in [0, 1], to a pose of `other`, which has the same bodies: how it begins, half-way to its
+    /// mirror image. The way of the root shrinks as much. A smaller and slower motion between this one and that pose.
+    #[must_use]
+    pub fn towards(&self, other: &Self, share: f32) -> Self {
+        let (first, mirrored) = (other.root_positions[0], &other.mirrored().local_rotations[0]);
+        let pairs = other.local_rotations[0].iter().zip(mirrored);
+        let rotations: Vec<Quat> = pairs.map(|(one, other)| one.slerp(*other, 0.5)).collect();
+        let root =
+            |p: &Vec3| Vec3::new((1.0 - share) * p.x, (1.0 - share) * p.y, p.z + share * (first.z - p.z));
+        let turn = |frame: &Vec<Quat>| -> Vec<Quat> {
+            frame.iter().zip(&rotations).map(|(from, to)| from.slerp(*to, share)).collect()
+        };
+        Self {
+            name: format!("{} towards {}", self.name, other.name),
+            root_positions: self.root_positions.iter().map(root).collect(),
+            local_rotations: self.local_rotations.iter().map(turn).collect(),
+            ..self.clone()
+        }
+    }
+
+    /// The mirror image: y negated, and bodies with `left` in their names swapped with those with `right`.
+    #[must_use]
+    pub fn mirrored(&self) -> Self {
+        let flip = |q: Quat| Quat::from_xyzw(-q.x, q.y, -q.z, q.w);
+        let twins: Vec<usize> = self.bodies.iter().enumerate().map(|(i, name)| self.twin(i, name)).collect();
+        let mirror =
+            |rotations: &Vec<Quat>| -> Vec<Quat> { twins.iter().map(|i| flip(rotations[*i])).collect() };
+        Self {
+            name: format!("{} (mirrored)", self.name),
+            root_positions: self.root_positions.iter().map(|p| Vec3::new(p.x, -p.y, p.z)).collect(),
+            local_rotations: self.local_rotations.iter().map(mirror).collect(),
+            ..self.clone()
+        }
+    }
+
+    /// The body whose motion a body has in the mirror; itself for one in the middle.
+    fn twin(&self, index: usize, name: &str) -> usize {
+        let other = match (name.contains("left"), name.contains("right")) {
+            (true, false) => name.replace("left", "right"),
+            (false, true) => name.replace("right", "left"),
+            _ => return index,
+        };
+        self.bodies.iter().position(|body| *body == other).unwrap_or(index)
+    }
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,187 @@
+use glam::{Quat, Vec3};
+use policy_core::Skeleton;
+
+use super::*;
+
+/// Index of a body of the humanoid.
+fn body(name: &str) -> usize {
+    Skeleton::humanoid().body_named(name).unwrap().index()
+}
+
+/// Index of a joint of the humanoid.
+fn joint(name: &str) -> usize {
+    Skeleton::humanoid().joint_named(name).unwrap().index()
+}
+
+fn still(frames: usize) -> Clip {
+    Clip {
+        name: "still".into(),
+        looping: false,
+        bodies: humanoid::bodies(),
+        times: (0..frames).map(|i| i as f32 / 30.0).collect(),
+        root_positions: vec![Vec3::new(0.0, 0.0, 0.9); frames],
+        local_rotations: vec![vec![Quat::IDENTITY; 15]; frames],
+    }
+}
+
+/// A clip whose right knee swings and which walks along x, one metre a second, in a cycle of one second.
+fn swinging() -> Clip {
+    let mut clip = still(121);
+    clip.times = (0..121).map(|i| i as f32 / 120.0).collect();
+    clip.looping = true;
+    for (i, t) in clip.times.clone().into_iter().enumerate() {
+        clip.root_positions[i].x = t;
+        let bend = 0.5 - 0.5 * (std::f32::consts::TAU * t).cos();
+        clip.local_rotations[i][body("right_shin")] = Quat::from_rotation_y(bend);
+    }
+    clip.checked().unwrap()
+}
+
+fn json_of(clip: &Clip) -> String {
+    serde_json::json!({
+        "name": clip.name, "loop": if clip.looping { "wrap" } else { "none" }, "up": "z", "quat": "xyzw",
+        "bodies": clip.bodies.to_vec(), "times": clip.times,
+        "root_pos": clip.root_positions.iter().map(|p| p.to_array()).collect::<Vec<_>>(),
+        "local_rot": clip.local_rotations.iter()
+            .map(|r| r.iter().map(|q| q.to_array()).collect::<Vec<_>>()).collect::<Vec<_>>(),
+    })
+    .to_string()
+}
+
+#[test]
+fn json_comes_back_as_it_went() {
+    let clip = swinging();
+    assert_eq!(json::parse("still", &json_of(&clip)).unwrap(), clip);
+}
+
+#[test]
+fn hostile_json_is_refused() {
+    let good = json_of(&swinging());
+    for bad in [
+        String::new(),
+        "{}".into(),
+        "[1, 2".into(),
+        good[..good.len() / 2].to_owned(),
+        good.replace("wrap", "sometimes"),
+        good.replace("\"z\"", "\"y\""),
+        good.replace("right_foot", "left_foot"),
+        good.replacen("0.9", "1e39", 1),
+        good.replacen("[0.0,0.0,0.0,1.0]", "[0.0,0.0,0.0,0.0]", 1),
+        good.replacen("[0.0,0.0,0.0,1.0]", "[0.0,0.0,1.0]", 1),
+        good.replacen("[0.0,0.0,0.0,1.0],", "", 1),
+    ] {
+        assert!(json::parse("bad", &bad).is_err(), "{}", &bad[..bad.len().min(80)]);
+    }
+}
+
+#[test]
+fn a_deepmimic_clip_is_turned_upright() {
+    let mut frame = vec![0.1, 1.0, 0.9, -2.0];
+    // Root, chest, neck, right hip; knee; ankle, shoulder; elbow; then the left side.
+    frame.extend([1.0, 0.0, 0.0, 0.0].repeat(4));
+    frame.push(-0.7);
+    frame.extend([1.0, 0.0, 0.0, 0.0].repeat(2));
+    frame.push(0.4);
+    frame.extend([1.0, 0.0, 0.0, 0.0]);
+    frame.push(-0.7);
+    frame.extend([1.0, 0.0, 0.0, 0.0].repeat(2));
+    frame.push(0.4);
+    assert_eq!(frame.len(), 44);
+    let text = serde_json::json!({ "Loop": "none", "Frames": [frame.clone(), frame.clone()] }).to_string();
+    let clip = deepmimic::parse("dm", &text).unwrap();
+    assert_eq!(clip.root_positions[0], Vec3::new(1.0, 2.0, 0.9));
+    let knee = clip.local_rotations[0][body("right_shin")];
+    assert!(knee.angle_between(Quat::from_rotation_y(0.7)) < 1e-4);
+    let elbow = clip.local_rotations[0][body("left_lower_arm")];
+    assert!(elbow.angle_between(Quat::from_rotation_y(-0.4)) < 1e-4);
+    frame.pop();
+    let short = serde_json::json!({ "Loop": "none", "Frames": [frame.clone(), frame] }).to_string();
+    assert!(deepmimic::parse("dm", &short).is_err());
+    assert!(deepmimic::parse("dm", "{\"Loop\":\"none\",\"Frames\":[]}").is_err());
+}
+
+#[test]
+fn times_must_ascend_and_stay_short() {
+    let mut clip = still(3);
+    clip.times[2] = clip.times[1];
+    assert!(matches!(clip.checked(), Err(ClipError::Times { frame: 2, .. })));
+    let mut clip = still(3);
+    clip.times[2] = 1e9;
+    assert!(matches!(clip.checked(), Err(ClipError::Duration { .. })));
+    assert!(matches!(still(1).checked(), Err(ClipError::FrameCount { found: 1, .. })));
+}
+
+#[test]
+fn the_mirror_of_the_mirror_is_the_clip() {
+    let mut clip = swinging();
+    clip.root_positions[3].y = 0.2;
+    let twice = clip.mirrored().mirrored();
+    assert_eq!(twice.root_positions, clip.root_positions);
+    assert_eq!(twice.local_rotations, clip.local_rotations);
+    let once = clip.mirrored();
+    assert_eq!(once.root_positions[3].y, -0.2);
+    assert_eq!(once.local_rotations[5][body("left_shin")], clip.local_rotations[5][body("right_shin")]);
+}
+
+#[test]
+fn a_cycle_is_closed_and_its_velocities_are_those_of_the_motion() {
+    let motion = Motion::fit(&swinging(), &Skeleton::humanoid()).unwrap();
+    assert_eq!(motion.poses.len(), 120);
+    assert!((motion.cycle_offset[0] - 1.0).abs() < 1e-6 && (motion.mean_speed() - 1.0).abs() < 1e-3);
+    let knee = joint("right_knee");
+    for (i, pose) in motion.poses.iter().enumerate() {
+        assert!((pose.qvel[0] - 1.0).abs() < 1e-3, "pose {i}: {}", pose.qvel[0]);
+        let tau = std::f64::consts::TAU;
+        let expected = 0.5 * tau * (tau * i as f64 / 120.0).sin();
+        assert!((pose.qvel[6 + knee] - expected).abs() < 0.02, "pose {i}: {}", pose.qvel[6 + knee]);
+    }
+    assert_eq!(motion.earlier(2, 1), 118);
+    assert_eq!(Motion::fit(&still(31), &Skeleton::humanoid()).unwrap().earlier(2, 1), 0);
+}
+
+#[test]
+fn joint_angles_give_the_rotations_back() {
+    let mut fit = JointFit::new(&Skeleton::humanoid(), "a", &humanoid::bodies()).unwrap();
+    let mut rotations = vec![Quat::IDENTITY; 15];
+    let hip = Quat::from_rotation_y(-1.2) * Quat::from_rotation_x(0.3) * Quat::from_rotation_z(-0.2);
+    rotations[body("left_thigh")] = hip;
+    rotations[body("right_lower_arm")] = Quat::from_rotation_y(-1.0);
+    let angles = fit.angles(&rotations);
+    let joint = |name: &str| angles[joint(name)];
+    assert!((joint("left_hip_y") + 1.2).abs() < 1e-4 && (joint("left_hip_x") - 0.3).abs() < 1e-4);
+    assert!((joint("left_hip_z") + 0.2).abs() < 1e-4 && (joint("right_elbow") + 1.0).abs() < 1e-4);
+    assert!(fit.worst().0 < 1e-6);
+}
+
+#[test]
+fn a_placed_pose_moves_and_turns_with_its_velocity() {
+    let pose = Motion::fit(&swinging(), &Skeleton::humanoid()).unwrap().poses[10].clone();
+    let turned = placed(&pose, 5.0, -3.0, std::f64::consts::FRAC_PI_2);
+    assert_eq!((turned.qpos[0], turned.qpos[1], turned.qpos[2]), (5.0, -3.0, pose.qpos[2]));
+    assert!((turned.qvel[1] - pose.qvel[0]).abs() < 1e-9 && turned.qvel[0].abs() < 1e-9);
+}
+
+#[test]
+fn a_missing_folder_or_clip_is_named() {
+    let folder = tempfile::tempdir().unwrap();
+    let folder = ClipFolder::from_argument(Some(folder.path().to_owned())).unwrap();
+    let error = folder.load("walk").unwrap_err().to_string();
+    assert!(error.contains("walk.json"), "{error}");
+    let error = ClipError::NoFolder { variable: MOTIONS_VARIABLE }.to_string();
+    assert!(error.contains("--motions") && error.contains("DeepMimic"), "{error}");
+}
+
+#[test]
+fn half_way_to_a_stand_a_walk_bends_and_goes_half_as_much() {
+    let (walk, stand) = (swinging(), still(2));
+    let half = walk.towards(&stand, 0.5);
+    assert!((half.cycle_offset().x - 0.5).abs() < 1e-6 && half.duration() == walk.duration());
+    let knee = body("right_shin");
+    let bend = |clip: &Clip| clip.local_rotations[60][knee].angle_between(Quat::IDENTITY);
+    assert!((bend(&walk.towards(&stand, 0.0)) - bend(&walk)).abs() < 1e-3);
+    assert!(bend(&walk) > 0.5 && (bend(&half) - 0.5 * bend(&walk)).abs() < 1e-3);
+    // What it goes towards is the same on both sides, whatever side that clip begins on.
+    let whole = walk.towards(&walk.mirrored(), 1.0);
+    let [left, right] = ["left_shin", "right_shin"].map(|name| whole.local_rotations[0][body(name)]);
+    assert!(left.angle_between(right) < 1e-3);
+}

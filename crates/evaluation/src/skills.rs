@@ -1,0 +1,168 @@
+//! Episodic skills: out of a heap of limbs onto the feet, and over the shoulder back into a walk.
+
+use std::sync::Arc;
+
+use glam::Vec2;
+use physics_bridge::Model;
+use policy_core::training::TARGET_RANGE_METRES;
+use policy_core::{CharacterPack, CharacterState, Command, Goal, SkillEnd, SkillId};
+use random::Rng;
+use random::limp::drop_limp;
+use rayon::prelude::*;
+use serde::Serialize;
+
+use super::eval_character::{EvalCharacter, SETTLE_SECS};
+use crate::trial::TICK_SECS;
+
+/// Seconds within which a dropped character must stand.
+const GET_UP_SECS: f32 = 5.0;
+
+/// Seconds within which an episodic skill must be over.
+const SKILL_SECS: f32 = 3.0;
+
+/// Body whose x axis tells which way a lying character faces; the root where there is none.
+const FACING: &str = "torso";
+
+/// A share of tries that went well.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
+pub struct RateReport {
+    /// 0 to 1.
+    pub success: f32,
+    /// Tries.
+    pub tries: usize,
+    /// Share that the discriminator ended, not the time limit.
+    pub recognised: f32,
+    /// Mean seconds until it did.
+    pub seconds: f32,
+}
+
+impl RateReport {
+    /// Of tries, each with whether it went well and the seconds after which the discriminator ended it, if it did.
+    fn of(tries: &[(bool, Option<f32>)]) -> Self {
+        let count = tries.len().max(1) as f32;
+        let ended: Vec<f32> = tries.iter().filter_map(|(_, secs)| *secs).collect();
+        Self {
+            success: tries.iter().filter(|(well, _)| *well).count() as f32 / count,
+            tries: tries.len(),
+            recognised: ended.len() as f32 / count,
+            seconds: ended.iter().sum::<f32>() / ended.len().max(1) as f32,
+        }
+    }
+}
+
+/// Limp drops after which the character stands within 5 s and still does a second later. `None` when the pack has no skill
+/// of this name.
+#[must_use]
+pub fn measure_get_up(
+    model: &Model,
+    pack: &Arc<CharacterPack>,
+    skill: &str,
+    drops: usize,
+) -> Option<RateReport> {
+    let skill = pack.skill_named(skill)?;
+    let tries: Vec<_> = (0..drops).into_par_iter().map(|i| gets_up(model, pack, skill, i as u64)).collect();
+    Some(RateReport::of(&tries))
+}
+
+fn gets_up(model: &Model, pack: &Arc<CharacterPack>, skill: SkillId, seed: u64) -> (bool, Option<f32>) {
+    let mut eval = EvalCharacter::new(model, pack, "idle");
+    let mut rng = Rng::new(seed, 11);
+    if !drop_on_the_spot(&mut eval, &mut rng) {
+        return (false, None);
+    }
+    let mut command = Command { skill: Some(skill), ..Command::default() };
+    let (mut stood, mut ended) = (0.0, None);
+    for tick in 0..((GET_UP_SECS + 1.0) / TICK_SECS) as u32 {
+        if !eval.tick(&command) {
+            return (false, ended);
+        }
+        command.skill = None;
+        if let Some((_, SkillEnd::Recognised)) = eval.controller.report().skill_ended {
+            ended = Some(tick as f32 * TICK_SECS);
+        }
+        let up = eval.is_upright();
+        stood = if up { stood + TICK_SECS } else { 0.0 };
+    }
+    // Up at the end, and so since five seconds after the drop.
+    (stood >= 1.0, ended)
+}
+
+fn drop_on_the_spot(eval: &mut EvalCharacter, rng: &mut Rng) -> bool {
+    let sound = drop_limp(&mut eval.character, Vec2::ZERO, rng);
+    eval.character.sense_into(&mut eval.state);
+    sound
+}
+
+/// States of an episodic skill from its start until half a second after its end: the skill that raises a fallen character
+/// starts limp on the ground, on its face or on its back, any other out of the node it returns to.
+#[must_use]
+pub fn watch_skill(
+    model: &Model,
+    pack: &Arc<CharacterPack>,
+    skill: SkillId,
+    on_its_face: bool,
+) -> Vec<CharacterState> {
+    let back = pack.skills()[skill.index()].returns_to;
+    let mut eval = EvalCharacter::new(model, pack, &pack.graph().node(back).name);
+    let ahead = |eval: &EvalCharacter| Some(eval.position() + Vec2::new(TARGET_RANGE_METRES, 0.0));
+    let mut command = Command { goal: Goal::Node(back), ..Command::default() };
+    if pack.recovery() == Some(skill) {
+        let body = pack.skeleton().body_named(FACING).unwrap_or_else(|| pack.skeleton().root());
+        let sign = if on_its_face { -1.0 } else { 1.0 };
+        let lies = |s: &EvalCharacter| sign * (s.state.body(body).rotation * glam::Vec3::X).z > 0.5;
+        let lying = (0..100).any(|seed| drop_on_the_spot(&mut eval, &mut Rng::new(seed, 11)) && lies(&eval));
+        if !lying {
+            return Vec::new();
+        }
+    } else {
+        for _ in 0..(SETTLE_SECS / TICK_SECS) as u32 {
+            command.target = ahead(&eval);
+            eval.tick(&command);
+        }
+    }
+    command.skill = Some(skill);
+    let mut states = vec![eval.state.clone()];
+    let mut after = 0.0;
+    while after < 0.5 && states.len() < 300 {
+        command.target = if pack.recovery() == Some(skill) { None } else { ahead(&eval) };
+        if !eval.tick(&command) {
+            break;
+        }
+        command.skill = None;
+        states.push(eval.state.clone());
+        after = if eval.controller.report().skill.is_some() { 0.0 } else { after + TICK_SECS };
+    }
+    states
+}
+
+/// Tries of an episodic skill out of the node it returns to, walking, that the discriminator ends within 3 s and after which the
+/// character still walks a second later.
+///
+/// # Panics
+/// When the pack has no such skill.
+#[must_use]
+pub fn measure_skill(model: &Model, pack: &Arc<CharacterPack>, skill: SkillId, tries: usize) -> RateReport {
+    let tries: Vec<_> =
+        (0..tries).into_par_iter().map(|i| comes_back(model, pack, skill, i as u64)).collect();
+    RateReport::of(&tries)
+}
+
+fn comes_back(model: &Model, pack: &Arc<CharacterPack>, skill: SkillId, seed: u64) -> (bool, Option<f32>) {
+    let back = pack.skills()[skill.index()].returns_to;
+    let mut eval = EvalCharacter::new(model, pack, &pack.graph().node(back).name);
+    let mut rng = Rng::new(seed, 13);
+    let start = ((SETTLE_SECS + rng.range(0.0, 1.0)) / TICK_SECS) as u32;
+    let mut ended = None;
+    for tick in 0..start + ((SKILL_SECS + 1.0) / TICK_SECS) as u32 {
+        let target = Some(eval.position() + Vec2::new(TARGET_RANGE_METRES, 0.0));
+        let skill = (tick == start).then_some(skill);
+        let command = Command { target, goal: Goal::Node(back), skill, ..Command::default() };
+        if !eval.tick(&command) || (tick < start && eval.controller.report().fallen) {
+            return (false, ended);
+        }
+        if let Some((_, SkillEnd::Recognised)) = eval.controller.report().skill_ended {
+            ended = Some((tick - start) as f32 * TICK_SECS);
+        }
+    }
+    (ended.is_some_and(|secs| secs <= SKILL_SECS) && eval.pelvis_height() > 0.65, ended)
+}

@@ -1,0 +1,232 @@
+//! A pad at random: stick, triggers and buttons as a restless player moves them.
+
+use std::collections::BTreeMap;
+
+use policy_core::bindings::{Bindings, Control};
+use policy_core::training::fall_height;
+use policy_core::{Button, Buttons, CharacterPack, GraphPosition, SkillEnd};
+use random::Rng;
+use serde::{Deserialize, Serialize};
+
+use crate::Rig;
+use crate::trial::{Gait, TICK_SECS, Trial, ticks};
+
+/// Which controls are moved.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum PadKind {
+    /// The stick.
+    Stick,
+    /// Stick and right trigger.
+    Speed,
+    /// Stick and left trigger.
+    Stance,
+    /// Stick and the button of the style path.
+    Style,
+    /// Stick, both triggers and the button of the style path.
+    AllButSkills,
+    /// The same, and the buttons of the skills.
+    Everything,
+}
+
+impl PadKind {
+    /// All kinds.
+    pub const ALL: [PadKind; 6] = [
+        PadKind::Stick,
+        PadKind::Speed,
+        PadKind::Stance,
+        PadKind::Style,
+        PadKind::AllButSkills,
+        PadKind::Everything,
+    ];
+
+    /// Name in reports.
+    #[must_use]
+    pub const fn name(self) -> &'static str {
+        match self {
+            PadKind::Stick => "stick",
+            PadKind::Speed => "speed",
+            PadKind::Stance => "stance",
+            PadKind::Style => "style",
+            PadKind::AllButSkills => "all_but_skills",
+            PadKind::Everything => "everything",
+        }
+    }
+
+    fn moves(self, kind: PadKind) -> bool {
+        self == kind || matches!(self, PadKind::AllButSkills | PadKind::Everything)
+    }
+}
+
+/// Falls under a pad at random.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(default)]
+pub struct RandomPadReport {
+    /// Falls per minute of one character. It gets up by itself.
+    pub falls_per_minute: f32,
+    /// Times per minute that Get-up raised a character out of a crawl that was late to rise.
+    pub rises_by_skill_per_minute: f32,
+    /// Share of the time in the skill that raises it, 0 to 1, without a press.
+    pub down: f32,
+}
+
+/// Counts of one character.
+#[derive(Clone, Copy, Debug, Default)]
+struct Count {
+    falls: u32,
+    rises: u32,
+    down_ticks: u32,
+}
+
+/// Falls by kind.
+#[must_use]
+pub fn measure_random_pad(rig: &Rig<'_>) -> BTreeMap<String, RandomPadReport> {
+    let Some(walk) = Gait::named(rig.pack, "walk") else { return BTreeMap::new() };
+    let seeds: Vec<u64> = (0..rig.effort.pad_players as u64).collect();
+    let secs = rig.effort.pad_secs;
+    let measure = |kind: PadKind| {
+        let counts = rig.each(&seeds, secs, |seed| play(rig, &walk, kind, *seed));
+        let minutes = (secs * counts.len() as f32 / 60.0).max(1e-6);
+        let per_minute = |count: fn(&Count) -> u32| counts.iter().map(count).sum::<u32>() as f32 / minutes;
+        RandomPadReport {
+            falls_per_minute: per_minute(|count| count.falls),
+            rises_by_skill_per_minute: per_minute(|count| count.rises),
+            down: per_minute(|count| count.down_ticks) * TICK_SECS / 60.0,
+        }
+    };
+    PadKind::ALL.into_iter().map(|kind| (kind.name().into(), measure(kind))).collect()
+}
+
+fn play(rig: &Rig<'_>, walk: &Gait, kind: PadKind, seed: u64) -> Count {
+    let mut trial = Trial::new(rig.model, rig.pack, rig.config, walk);
+    let mut player = Player::new(kind, Rng::new(seed, 41));
+    let (mut count, mut raised) = (Count::default(), false);
+    for _ in 0..ticks(rig.effort.pad_secs) {
+        player.hold(&mut trial);
+        let position = trial.controller.report().position;
+        // A pack without a skill to get up leaves the character lying.
+        if !trial.tick() || trial.is_down() {
+            count.falls += 1;
+            trial.place(trial.position(), 0.0);
+            raised = false;
+            continue;
+        }
+        let start = Start::of(&trial, position);
+        count.falls += u32::from(start == Start::Fall && !raised);
+        count.rises += u32::from(start == Start::LateRise && !raised);
+        raised = match start {
+            Start::Fall | Start::LateRise => true,
+            Start::None => raised && trial.controller.report().skill.is_some(),
+            Start::Press => false,
+        };
+        count.down_ticks += u32::from(raised);
+    }
+    count
+}
+
+/// Why a skill started in the last tick, if one did.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Start {
+    None,
+    Press,
+    Fall,
+    LateRise,
+}
+
+impl Start {
+    /// `before` is the place on the graph before the tick.
+    fn of(trial: &Trial, before: GraphPosition) -> Start {
+        let (report, pack) = (trial.controller.report(), trial.controller.pack());
+        // It starts again at once where its time was over and the character still lies.
+        let again = report.skill_ended.is_some_and(|(_, end)| end == SkillEnd::TimeLimit);
+        match report.skill_started {
+            None => Start::None,
+            started if started != pack.recovery() || started == trial.asked_skill() => Start::Press,
+            _ if again || !is_rising(pack, before, report.goal) => Start::Fall,
+            _ if is_low(pack, before, trial.pelvis_height()) => Start::Fall,
+            _ => Start::LateRise,
+        }
+    }
+}
+
+fn is_low(pack: &CharacterPack, position: GraphPosition, pelvis_height: f32) -> bool {
+    // The pelvis may have come up by a hair in the tick that the skill has had.
+    fall_height(pack.graph(), position).is_some_and(|limit| pelvis_height < limit + 0.05)
+}
+
+/// True on the way out of a low gait.
+fn is_rising(pack: &CharacterPack, from: GraphPosition, to: GraphPosition) -> bool {
+    match (fall_height(pack.graph(), from), fall_height(pack.graph(), to)) {
+        (Some(from), Some(to)) => from < to,
+        (from, to) => from.is_none() && to.is_some(),
+    }
+}
+
+/// A restless player.
+struct Player {
+    kind: PadKind,
+    rng: Rng,
+    skills: Vec<Button>,
+    style: Option<Button>,
+    /// Seconds until the stick, the triggers, the style button and the skill buttons change.
+    change_in: [f32; 5],
+}
+
+impl Player {
+    fn new(kind: PadKind, rng: Rng) -> Self {
+        let bindings = Bindings::default();
+        let skills = bindings.skills.into_iter().map(|(button, _)| button).collect();
+        let style = bindings.paths.iter().find_map(|binding| match binding.control {
+            Control::Button(button) => Some(button),
+            _ => None,
+        });
+        Self { kind, rng, skills, style, change_in: [1.0, 2.0, 2.0, 2.0, 3.0] }
+    }
+
+    /// Moves the controls of the pad.
+    fn hold(&mut self, trial: &mut Trial) {
+        let Self { kind, rng, skills, style: button, change_in } = self;
+        change_in.iter_mut().for_each(|secs| *secs -= TICK_SECS);
+        let [stick, speed, stance, style, skill] = change_in;
+        if *stick <= 0.0 {
+            *stick = rng.range(0.4, 3.0);
+            let push = mostly_ends(rng, 0.15, 0.6);
+            trial.steer(rng.angle(), push);
+        }
+        if kind.moves(PadKind::Speed) && *speed <= 0.0 {
+            *speed = rng.range(0.5, 4.0);
+            trial.pad.right_trigger = mostly_ends(rng, 0.4, 0.3);
+        }
+        if kind.moves(PadKind::Stance) && *stance <= 0.0 {
+            *stance = rng.range(0.5, 4.0);
+            trial.pad.left_trigger = mostly_ends(rng, 0.4, 0.3);
+        }
+        let mut buttons = Buttons::NONE;
+        if let Some(button) = *button {
+            buttons.set(button, trial.pad.buttons.contains(button));
+        }
+        if kind.moves(PadKind::Style) && *style <= 0.0 {
+            *style = rng.range(0.5, 4.0);
+            let held = rng.chance(0.3);
+            if let Some(button) = *button {
+                buttons.set(button, held);
+            }
+        }
+        if *kind == PadKind::Everything && *skill <= 0.0 {
+            *skill = rng.range(1.0, 8.0);
+            buttons = buttons.with(skills[rng.index(skills.len())]);
+        }
+        trial.pad.buttons = buttons;
+    }
+}
+
+/// 0 and 1 with the given probabilities, else anything between.
+fn mostly_ends(rng: &mut Rng, zero: f32, one: f32) -> f32 {
+    let draw = rng.uniform();
+    if draw < zero {
+        0.0
+    } else if draw < zero + one {
+        1.0
+    } else {
+        rng.uniform()
+    }
+}

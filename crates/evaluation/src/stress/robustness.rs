@@ -1,0 +1,137 @@
+//! A body and a world that differ from training: latency, noise, strength, friction, gravity, mass, time step; in every gait.
+
+use std::collections::BTreeMap;
+
+use physics_bridge::{Model, ModelError, Settings};
+
+use super::roam::{FallReport, roam};
+use crate::Rig;
+
+/// Standard deviation of the noise on actions.
+const ACTION_NOISE: f32 = 0.1;
+
+/// What differs from training.
+#[derive(Clone, Copy, Debug)]
+enum Change {
+    Nothing,
+    LateTick,
+    Noise,
+    Settings(fn(&mut Settings)),
+    /// Factor on an attribute of the MJCF.
+    Attribute(&'static str, f64),
+}
+
+const CASES: [(&str, Change); 13] = [
+    ("none", Change::Nothing),
+    ("latency_1_tick", Change::LateTick),
+    ("strength_x0.8", Change::Settings(|settings| settings.strength = 0.8)),
+    ("strength_x1.2", Change::Settings(|settings| settings.strength = 1.2)),
+    ("friction_x0.5", Change::Settings(|settings| settings.friction = 0.5)),
+    ("friction_x1.5", Change::Settings(|settings| settings.friction = 1.5)),
+    ("gravity_x0.8", Change::Settings(|settings| settings.gravity = 0.8)),
+    ("gravity_x1.2", Change::Settings(|settings| settings.gravity = 1.2)),
+    ("mass_x0.8", Change::Settings(|settings| settings.mass = 0.8)),
+    ("mass_x1.2", Change::Settings(|settings| settings.mass = 1.2)),
+    ("timestep_x0.5", Change::Attribute("timestep", 0.5)),
+    ("timestep_x2", Change::Attribute("timestep", 2.0)),
+    ("action_noise_0.1", Change::Noise),
+];
+
+/// Falls by case, and in it by gait.
+///
+/// # Errors
+/// When the model can't be changed so.
+pub fn measure_robustness(
+    rig: &Rig<'_>,
+) -> Result<BTreeMap<String, BTreeMap<String, FallReport>>, ModelError> {
+    let seeds: Vec<u64> = (0..rig.effort.roamers as u64).collect();
+    let secs = rig.effort.roam_secs;
+    let mut cases = BTreeMap::new();
+    for (name, change) in CASES {
+        let model = changed(rig.model, change)?;
+        let measure = |gait: &_| {
+            rig.each(&seeds, secs, |seed| {
+                roam(
+                    rig,
+                    &model,
+                    gait,
+                    |none, trial, rng| match change {
+                        Change::LateTick => none.late(trial.controller.joint_targets()),
+                        Change::Noise => none.noisy(rig.pack.action(), ACTION_NOISE, rng),
+                        _ => none,
+                    },
+                    (secs, *seed),
+                )
+            })
+        };
+        let gaits = rig.gaits();
+        let falls = gaits.iter().map(|gait| (gait.name.into(), FallReport::of(&measure(gait), secs)));
+        cases.insert(name.into(), falls.collect());
+    }
+    Ok(cases)
+}
+
+/// Trials for one gait.
+pub(crate) const CASE_COUNT: usize = CASES.len();
+
+fn changed(model: &Model, change: Change) -> Result<Model, ModelError> {
+    match change {
+        Change::Settings(change) => {
+            let mut settings = model.settings();
+            change(&mut settings);
+            model.with_settings(settings)
+        }
+        Change::Attribute(name, factor) => {
+            let text = scaled(model.mjcf(), name, factor);
+            Model::from_mjcf_with_skeleton(&text, model.skeleton().clone())
+        }
+        Change::Nothing | Change::LateTick | Change::Noise => Ok(model.clone()),
+    }
+}
+
+/// The text with every number of an attribute multiplied by a factor.
+fn scaled(mjcf: &str, attribute: &str, factor: f64) -> String {
+    let opening = format!(" {attribute}=\"");
+    let mut parts = mjcf.split(opening.as_str());
+    let mut text = parts.next().unwrap_or_default().to_owned();
+    for part in parts {
+        let (value, rest) = part.split_once('"').unwrap_or((part, ""));
+        let value = value.trim().parse::<f64>().map_or(value.to_owned(), |v| (v * factor).to_string());
+        text.extend([opening.as_str(), value.as_str(), "\"", rest]);
+    }
+    text
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const HUMANOID: &str = include_str!("../../../../assets/humanoid.xml");
+
+    #[test]
+    fn attributes_are_scaled_and_the_rest_of_the_text_stays() {
+        let text = "<a density=\"2\"/><b name=\"density\" density=\"0.5\" size=\"3\"/>";
+        assert_eq!(
+            scaled(text, "density", 3.0),
+            "<a density=\"6\"/><b name=\"density\" density=\"1.5\" size=\"3\"/>"
+        );
+        assert_eq!(scaled(text, "mass", 3.0), text);
+    }
+
+    #[test]
+    fn every_case_is_what_its_name_says() {
+        let model = Model::from_mjcf(HUMANOID).unwrap();
+        for (name, change) in CASES {
+            let other = changed(&model, change).unwrap();
+            let mass = (other.mass_kg() / model.mass_kg()) as f32;
+            let expected = match name {
+                "mass_x0.8" => (0.8, 4),
+                "mass_x1.2" => (1.2, 4),
+                "timestep_x0.5" => (1.0, 8),
+                "timestep_x2" => (1.0, 2),
+                _ => (1.0, 4),
+            };
+            assert!((mass - expected.0).abs() < 1e-3 && other.substeps() == expected.1, "{name}: {mass}");
+        }
+    }
+}

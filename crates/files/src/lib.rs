@@ -1,0 +1,11 @@
+//! Files as the trainer's programs read and write them.
+//!
+//! Reads stop at a bound. Writes leave a whole file or none. What a message quotes from a file can't steer a terminal.
+
+mod storage;
+mod text;
+
+pub use storage::{
+    PARTIAL, read_bounded, read_text_bounded, remove_unfinished, write_atomically, write_keeping_previous,
+};
+pub use text::{printable, quoted};
