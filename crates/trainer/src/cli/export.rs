@@ -1,6 +1,6 @@
 //! `trainer export`: the policies and paths of a pack as ONNX models.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use anyhow::{Context, Result};
 use clap::Args;
@@ -33,7 +33,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<()> {
 }
 
 /// Reads a pack.
-pub(super) fn load(path: &PathBuf) -> Result<CharacterPack> {
+pub(super) fn load(path: &Path) -> Result<CharacterPack> {
     let bytes = read_bounded(path, MAX_PACK_BYTES as u64);
     let bytes = bytes.with_context(|| format!("cannot read {}", path.display()))?;
     CharacterPack::from_bytes(&bytes).with_context(|| format!("cannot load {}", path.display()))

@@ -1,7 +1,7 @@
 //! What an engine must know beside the models: conventions, layout of the observation, joints, motors, rates.
 
-use policy_core::CharacterPack;
 use policy_core::training::{NORMALISED_LIMIT, TARGET_LEN, TARGET_RANGE_METRES};
+use policy_core::{CharacterPack, JointActuation, NodeId, PolicyGraph};
 use serde::{Deserialize, Serialize};
 
 use super::{ACTION, BLEND, OBSERVATION, OPSET};
@@ -89,7 +89,7 @@ pub struct DeployedJoint {
     /// Radians of joint target per unit of action.
     pub action_gain: f32,
     /// The motor, where the pack says: gain, damping, force limit, armature.
-    pub motor: Option<policy_core::JointActuation>,
+    pub motor: Option<JointActuation>,
 }
 
 /// The input of every model: raw numbers; the normaliser is inside the model.
@@ -144,6 +144,8 @@ pub struct PathFile {
     pub layers: usize,
     /// Columns of that input: the policies, in the order of the path. The weights of a row add up to 1.
     pub nodes: Vec<String>,
+    /// Least time from each node to the next and back, seconds.
+    pub seconds: Vec<[f32; 2]>,
 }
 
 impl Deployment {
@@ -151,7 +153,7 @@ impl Deployment {
     #[must_use]
     pub fn of(pack: &CharacterPack) -> Self {
         let (graph, skeleton) = (pack.graph(), pack.skeleton());
-        let name = |node: &policy_core::NodeId| graph.node(*node).name.clone();
+        let name = |node: &NodeId| graph.node(*node).name.clone();
         let policies = graph.nodes().iter().enumerate().map(|(index, node)| PolicyFile {
             name: node.name.clone(),
             file: file_name("policy", index, &node.name),
@@ -164,6 +166,7 @@ impl Deployment {
             blend_input: BLEND.to_owned(),
             layers: pack.policies()[0].layers().len(),
             nodes: path.nodes().iter().map(name).collect(),
+            seconds: path.nodes().windows(2).map(|pair| seconds(graph, pair[0], pair[1])).collect(),
         });
         Self {
             format: FORMAT.to_owned(),
@@ -245,6 +248,12 @@ impl ObservationLayout {
         let parts = parts.collect();
         Self { input: OBSERVATION.to_owned(), len: start, parts, clip: NORMALISED_LIMIT }
     }
+}
+
+/// Time from a node to its neighbour and back.
+fn seconds(graph: &PolicyGraph, a: NodeId, b: NodeId) -> [f32; 2] {
+    let edge = graph.edge_between(a, b).expect("a path runs along edges");
+    [edge.seconds_from(a), edge.seconds_from(b)]
 }
 
 fn joints(pack: &CharacterPack) -> Vec<DeployedJoint> {

@@ -142,6 +142,7 @@ fn the_deployment_file_says_what_an_engine_needs() {
     assert_eq!(parts.iter().map(|part| part.len).collect::<Vec<_>>(), [1, 42, 90, 45, 45, 2]);
     assert_eq!(deployment.joints.len(), common::JOINTS);
     assert_eq!(deployment.paths[0].nodes, ["idle", "walk", "jog", "run"]);
+    assert_eq!(deployment.paths[0].seconds, [[0.5; 2]; 3]);
     assert_eq!(deployment.paths[2].file, "path_Odd-name--2.onnx");
     for file in deployment.policies.iter().map(|p| &p.file).chain(deployment.mjcf.as_ref()) {
         assert!(folder.path().join(file).is_file(), "{file}");
