@@ -31,11 +31,13 @@ pub struct EvalCharacter {
 }
 
 impl EvalCharacter {
-    /// A character that walks along x from the node called `start`, or from the first one. It does not get up by itself.
+    /// A character that walks along x from the node called `start`, or from the first one. It does not get up by itself,
+    /// and turns are left to its policies.
     #[must_use]
     pub fn new(model: &Model, pack: &Arc<CharacterPack>, start: &str) -> Self {
         let start = pack.graph().node_named(start).unwrap_or_default();
-        let config = ControllerConfig { auto_recover: false, start, ..ControllerConfig::default() };
+        let config =
+            ControllerConfig { auto_recover: false, turn_assist: None, start, ..ControllerConfig::default() };
         let mut eval = Self {
             character: Character::new(model),
             controller: Controller::with_config(pack.clone(), config),

@@ -53,7 +53,7 @@ pub struct ControllerConfig {
     pub blend_mode: BlendMode,
     /// Time over which joint targets pass from one policy to the other when a skill starts or ends, seconds; 0 for a jump.
     pub handover_secs: f32,
-    /// Slow down fast gaits while the target lies far off the heading; `None` to leave turning to the policies.
+    /// Slow down fast gaits while the target lies far off the heading, the default; `None` to leave turning to the policies.
     pub turn_assist: Option<TurnAssist>,
 }
 
@@ -67,7 +67,7 @@ impl Default for ControllerConfig {
             start: NodeId::new(0),
             blend_mode: BlendMode::Parameters,
             handover_secs: 0.0,
-            turn_assist: None,
+            turn_assist: Some(TurnAssist::default()),
         }
     }
 }

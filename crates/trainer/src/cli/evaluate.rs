@@ -37,9 +37,9 @@ pub(crate) struct Arguments {
     /// Measure these sections alone, separated by commas.
     #[arg(long, value_delimiter = ',', value_parser = section)]
     only: Vec<Section>,
-    /// Let the player's controller slow down to turn.
+    /// Leave turning to the policies: the player's controller does not slow down to turn.
     #[arg(long)]
-    turn_assist: bool,
+    no_turn_assist: bool,
     /// Seconds in which the player's controller passes from the joint targets before a skill to those of the skill.
     #[arg(long, default_value_t = 0.0, value_parser = seconds)]
     handover_secs: f32,
@@ -78,7 +78,7 @@ pub(crate) fn run(
         Some(clips) => states_of_clips(model, recipes, clips, &pack)?,
         None => BTreeMap::new(),
     };
-    let turn_assist = arguments.turn_assist.then(TurnAssist::default);
+    let turn_assist = (!arguments.no_turn_assist).then(TurnAssist::default);
     let handover_secs = arguments.handover_secs;
     let config = ControllerConfig { turn_assist, handover_secs, ..ControllerConfig::default() };
     let progress = Progress::bar();

@@ -50,6 +50,7 @@ impl Rollout {
         let config = ControllerConfig {
             auto_recover: false,
             assist_rise: false,
+            turn_assist: None,
             start,
             ..ControllerConfig::default()
         };

@@ -117,8 +117,12 @@ impl Workspace {
             trained.push(TrainedSkill::from_checkpoint(&policy.name, &checkpoint, &path)?);
         }
         let pack = Arc::new(bind(&plan, &trained, &self.normalisers, &self.model, None)?);
-        let config =
-            ControllerConfig { auto_recover: false, assist_rise: false, ..ControllerConfig::default() };
+        let config = ControllerConfig {
+            auto_recover: false,
+            assist_rise: false,
+            turn_assist: None,
+            ..ControllerConfig::default()
+        };
         Ok(HandOver { controller: Controller::with_config(pack, config), skill: SkillId::new(0), node })
     }
 
