@@ -8,7 +8,7 @@ use std::sync::Arc;
 
 use common::{Body, DT, JOINTS, MJCF, controller, last_error, load, old_bytes, pack, tick, walking};
 use policy_core::glam::Vec2;
-use policy_core::{CharacterPack, CharacterState, Command, Controller, Goal};
+use policy_core::{CharacterPack, CharacterState, Command, Controller, ControllerConfig, Goal};
 use policy_space::*;
 
 fn written<T>(write: impl FnOnce(&mut MaybeUninit<T>) -> PsStatus) -> T {
@@ -184,7 +184,9 @@ fn a_controller_outlives_its_pack_and_goes_on_with_another() {
 fn the_choices_reach_the_controller() {
     let pack = pack();
     let mut config = written(|slot| ps_config_default(Some(slot)));
-    assert_eq!((config.auto_recover, config.turn_assist, config.start_node), (1, 0, 0));
+    let usual = ControllerConfig::default();
+    assert_eq!((config.auto_recover != 0, config.start_node), (usual.auto_recover, 0));
+    assert_eq!(config.turn_assist != 0, usual.turn_assist.is_some());
     (config.start_node, config.blend_mode) = (1, PsBlendMode::Switch as i32);
     let mut controller = ps_controller_new(Some(&pack), Some(&config)).unwrap();
     assert_eq!(report(&controller).position.from_node, 1);
