@@ -71,29 +71,48 @@ fn target_names(metadata: &str) -> Result<Vec<String>> {
     Ok(names.map(str::to_owned).collect())
 }
 
-/// Input of most targets is short, and bounds what one may take; packs and their manifests alone are longer than 4 KiB.
+/// Input of most targets is short, and bounds what one may take; some files are longer than 4 KiB.
 fn length_limit(target: &str) -> &'static str {
     match target {
         "pack" => "-max_len=1000000",
-        "manifest" => "-max_len=65536",
-        "state" => "-max_len=8192",
+        "manifest" | "replay" => "-max_len=65536",
+        "gltf" | "mjcf" | "clip" => "-max_len=16384",
+        "state" | "recipe" | "checkpoint" => "-max_len=8192",
         _ => "-max_len=4096",
     }
 }
 
-/// Starts a target's corpus with what the project ships: sound input is the best to mutate.
+/// Starts a target's corpus with what the project ships: sound input is the best to mutate. `fuzz/seeds` has the corpora
+/// that earlier runs found, minimised, where they are small.
 fn seed(root: &Path, target: &str) -> Result<()> {
     let corpus = root.join("fuzz/corpus").join(target);
     fs::create_dir_all(&corpus).with_context(|| format!("create {}", corpus.display()))?;
-    let shipped = match target {
+    let mut shipped = Vec::new();
+    let folders: &[(&str, &str)] = match target {
         // The small pack, whose tensors the target of manifests uses.
-        "pack" | "manifest" => files_with_extension(&root.join("tests/golden"), "safetensors")?,
-        "script" => files_with_extension(&root.join("assets/scripts"), "ron")?,
-        _ => Vec::new(),
+        "pack" | "manifest" => &[("tests/golden", "safetensors")],
+        "script" => &[("assets/scripts", "ron")],
+        "mjcf" => &[("tests/assets", "xml"), ("assets", "xml")],
+        "recipe" => &[("assets/recipes", "toml"), ("assets/recipes/lineage", "toml")],
+        "clip" => &[
+            ("tests/hostile/seeds/clip", "json"),
+            ("tests/hostile/seeds/clip", "txt"),
+            ("tests/hostile/seeds/clip", "npy"),
+        ],
+        _ => &[],
     };
+    for (folder, ending) in folders {
+        shipped.extend(files_with_extension(&root.join(folder), ending)?);
+    }
+    let found = root.join("fuzz/seeds").join(target);
+    if found.is_dir() {
+        for entry in fs::read_dir(&found).with_context(|| format!("list {}", found.display()))? {
+            shipped.push(entry?.path());
+        }
+    }
     for path in shipped {
         let mut bytes = fs::read(&path).with_context(|| format!("read {}", path.display()))?;
-        if target == "manifest" {
+        if target == "manifest" && path.extension().is_some_and(|ending| ending == "safetensors") {
             bytes = manifest_of(&bytes).with_context(|| format!("{} is no pack", path.display()))?;
         }
         let seed = corpus.join(path.file_name().unwrap_or_default());

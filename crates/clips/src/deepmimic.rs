@@ -69,6 +69,7 @@ pub fn parse(name: &str, text: &str) -> Result<Clip, ClipError> {
 
 fn rotations(bodies: &[String], frame: &[f32; FRAME]) -> Vec<Quat> {
     let quat = |at: usize| {
+        // The tables above stay within the 44 numbers of a frame.
         let v = z_up(Vec3::new(frame[at + 1], frame[at + 2], frame[at + 3]));
         Quat::from_xyzw(v.x, v.y, v.z, frame[at])
     };

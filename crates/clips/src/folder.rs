@@ -2,12 +2,12 @@
 
 use std::path::{Path, PathBuf};
 
-use files::{read_bounded, read_text_bounded};
+use files::read_bounded;
 
 use super::{Clip, ClipError, deepmimic, json, npy};
 
-/// Largest clip, bytes.
-const MOST_BYTES: u64 = 64 << 20;
+/// Largest clip, bytes. An empty list of three bytes takes 24 in memory, and more while the list of them grows.
+const MOST_BYTES: u64 = 24 << 20;
 
 /// Environment variable that names the folder of clips.
 pub const MOTIONS_VARIABLE: &str = "POLICY_SPACE_MOTIONS";
@@ -48,15 +48,22 @@ impl ClipFolder {
 /// # Errors
 /// When it can't be read or is no clip.
 pub fn load_file(path: &Path) -> Result<Clip, ClipError> {
-    let name = path.file_stem().map(|s| s.to_string_lossy().into_owned()).unwrap_or_default();
     let io = |source| ClipError::Io { path: path.to_owned(), source };
+    from_bytes(path, &read_bounded(path, MOST_BYTES).map_err(io)?)
+}
+
+/// Reads the bytes of one clip file; the ending of `path` tells the format.
+///
+/// # Errors
+/// When they are no clip.
+pub fn from_bytes(path: &Path, bytes: &[u8]) -> Result<Clip, ClipError> {
+    let name = path.file_stem().map(|s| s.to_string_lossy().into_owned()).unwrap_or_default();
+    let wrong = |message| ClipError::Format { clip: name.clone(), message };
+    let text = || std::str::from_utf8(bytes).map_err(|_| wrong("expected UTF-8".to_owned()));
     match path.extension().and_then(|e| e.to_str()) {
-        Some("json") => json::parse(&name, &read_text_bounded(path, MOST_BYTES).map_err(io)?),
-        Some("txt") => deepmimic::parse(&name, &read_text_bounded(path, MOST_BYTES).map_err(io)?),
-        Some("npy") => npy::parse(&name, &read_bounded(path, MOST_BYTES).map_err(io)?),
-        other => Err(ClipError::Format {
-            clip: name,
-            message: format!("expected a file ending in .json, .txt or .npy, found {other:?}"),
-        }),
+        Some("json") => json::parse(&name, text()?),
+        Some("txt") => deepmimic::parse(&name, text()?),
+        Some("npy") => npy::parse(&name, bytes),
+        other => Err(wrong(format!("expected a file ending in .json, .txt or .npy, found {other:?}"))),
     }
 }

@@ -18,7 +18,7 @@ mod pickle_machine;
 
 pub use error::ClipError;
 pub use fitted::{FitError, Fitted, fit};
-pub use folder::{ClipFolder, MOTIONS_VARIABLE, load_file};
+pub use folder::{ClipFolder, MOTIONS_VARIABLE, from_bytes, load_file};
 pub use joint_fit::JointFit;
 pub use motion::{MOTION_HZ, Motion, TICK_STRIDE, placed};
 
@@ -65,6 +65,7 @@ impl Clip {
             }
         }
         for frame in 0..frames {
+            // All lists have as many frames as there are times.
             let (expected, found) = (self.bodies.len(), self.local_rotations[frame].len());
             if found != expected || found == 0 {
                 return Err(ClipError::Lengths {
@@ -103,6 +104,7 @@ impl Clip {
     /// Seconds from the first to the last frame.
     #[must_use]
     pub fn duration(&self) -> f32 {
+        // A clip that was checked has two frames or more, here and below.
         self.times[self.times.len() - 1]
     }
 

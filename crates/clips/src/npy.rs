@@ -40,6 +40,7 @@ fn read(name: &str, bytes: &[u8]) -> Result<Clip, String> {
     if !(1.0..=1000.0).contains(&fps) {
         return Err(format!("expected 1 to 1000 in `fps`, found {fps}"));
     }
+    // `chunks_exact` gives chunks of that length, and the shapes are as checked above.
     let quat = |v: &[f32]| Quat::from_xyzw(v[0], v[1], v[2], v[3]);
     let frame = |v: &[f32]| v.chunks_exact(4).map(quat).collect();
     Ok(Clip {
@@ -61,6 +62,7 @@ fn payload(bytes: &[u8]) -> Result<&[u8], String> {
         _ => return Err("expected version 1, 2 or 3 of the numpy format".into()),
     };
     let end = start.checked_add(length).filter(|e| *e <= rest.len()).ok_or("expected a whole header")?;
+    // `end` is inside, and not before `start`.
     let header = String::from_utf8_lossy(&rest[start..end]);
     if !header.contains("|O") {
         return Err(format!("expected an array of Python objects, found the header {}", header.trim()));

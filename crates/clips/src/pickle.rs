@@ -66,6 +66,7 @@ impl Pickle {
     /// The object of an index.
     #[must_use]
     pub fn object(&self, id: Id) -> &Object {
+        // Ids come from the machine, which gives them to objects only.
         &self.objects[id]
     }
 

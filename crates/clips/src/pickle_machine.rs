@@ -29,6 +29,7 @@ impl Machine<'_> {
         let end = self.at.checked_add(count).filter(|e| *e <= self.bytes.len());
         let end =
             end.ok_or_else(|| format!("expected {count} bytes at {}, found the end of the file", self.at))?;
+        // `end` is inside, and `at` is not behind it.
         let taken = &self.bytes[self.at..end];
         self.at = end;
         Ok(taken)
@@ -36,6 +37,7 @@ impl Machine<'_> {
 
     fn number(&mut self, bytes: usize) -> Step<u64> {
         let mut wide = [0; 8];
+        // Callers ask for 1 to 8 bytes.
         wide[..bytes].copy_from_slice(self.take(bytes)?);
         Ok(u64::from_le_bytes(wide))
     }
@@ -51,6 +53,7 @@ impl Machine<'_> {
     }
 
     fn line(&mut self) -> Step<String> {
+        // An opcode was just taken, so `at` is inside; a line leaves it there.
         let rest = &self.bytes[self.at..];
         let end = rest.iter().position(|b| *b == b'\n').ok_or("expected the end of a line")?;
         let line = String::from_utf8_lossy(&rest[..end]).into_owned();
@@ -78,6 +81,7 @@ impl Machine<'_> {
     fn since_mark(&mut self) -> Step<Vec<Id>> {
         let mark =
             self.marks.pop().ok_or_else(|| format!("expected a mark before {}, found none", self.at))?;
+        // `pop` never goes below the last mark.
         Ok(self.stack.split_off(mark))
     }
 
@@ -89,6 +93,7 @@ impl Machine<'_> {
         if self.memo.len() <= slot {
             self.memo.resize(slot + 1, None);
         }
+        // The memo was just made long enough.
         self.memo[slot] = Some(top);
         Ok(())
     }
@@ -116,6 +121,7 @@ impl Machine<'_> {
 
     fn append(&mut self, new: Vec<Id>) -> Step<()> {
         let to = *self.stack.last().ok_or("expected a list, found none")?;
+        // Every number on the stack is that of an object that was pushed.
         match &mut self.objects[to] {
             Object::Sequence(items) => items.extend(new),
             other => return Err(format!("expected a list, found {other:?}")),

@@ -167,6 +167,7 @@ fn seconds(micros: u64) -> f64 {
 }
 
 fn u16_of(bytes: &[u8]) -> u16 {
+    // Callers pass the rest of a slice of HEADER_LEN or RECORD_LEN, at two bytes before its end or earlier.
     u16::from_le_bytes([bytes[0], bytes[1]])
 }
 
@@ -191,6 +192,7 @@ fn check_crc(bytes: &[u8], start: usize, end: usize) -> Result<usize, RecordingE
 
 fn read_header(bytes: &[u8]) -> Result<(RecordedPad, usize), RecordingError> {
     let head = slice(bytes, 0, HEADER_LEN)?;
+    // `slice` gave all HEADER_LEN bytes, which the indices below stay within.
     if head[..8] != MAGIC {
         return Err(RecordingError::NoRecording);
     }
@@ -227,6 +229,7 @@ fn read_record(bytes: &[u8], at: usize, hid: bool) -> Result<Record, RecordingEr
     let (micros, rest) = slice(bytes, at, RECORD_LEN)?.split_at(8);
     let mut time = [0; 8];
     time.copy_from_slice(micros);
+    // `slice` gave all RECORD_LEN bytes; four of them are left behind the time.
     let len = usize::from(u16_of(&rest[2..]));
     let body = at + RECORD_LEN..at + RECORD_LEN + len;
     slice(bytes, body.start, len)?;
@@ -235,6 +238,7 @@ fn read_record(bytes: &[u8], at: usize, hid: bool) -> Result<Record, RecordingEr
     let kind = Kind::of(rest[0]).ok_or(event)?;
     let sound = match kind {
         Kind::Report | Kind::Feature => hid && len <= MAX_RECORDED_REPORT,
+        // `slice` has found the body inside the file.
         Kind::State => !hid && plain::decode_state(&bytes[body.clone()]).is_some(),
         Kind::Disconnected => len == 0,
         Kind::Calibration => plain::decode_calibration(&bytes[body.clone()]).is_some(),

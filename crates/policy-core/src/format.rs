@@ -26,6 +26,9 @@ pub const MAX_NAME_BYTES: usize = 64;
 /// Largest pack that is worth reading into memory, bytes.
 pub const MAX_PACK_BYTES: usize = 256 << 20;
 
+/// Longest header of a pack's file, bytes: manifest, names and shapes of the tensors.
+pub const MAX_HEADER_BYTES: usize = 8 << 20;
+
 /// Everything in a pack but the tensors.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]

@@ -139,6 +139,7 @@ impl PolicyGraph {
             if !joins || !timed {
                 return Err(GraphError::Edge { edge: index, found: edge });
             }
+            // `joins` says that both are nodes, and there is a policy for each node.
             edge.distance = libm::sqrt(policies[a].squared_distance(&policies[b])) as f32;
             checked.push(edge);
         }

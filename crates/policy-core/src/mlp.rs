@@ -91,6 +91,7 @@ impl Layer {
                 return Err(MlpError::Count { what, expected, found: numbers.len() });
             }
             if let Some(index) = numbers.iter().position(|n| !n.is_finite()) {
+                // `position` found the index.
                 return Err(MlpError::NotFinite { what, index, found: numbers[index] });
             }
         }
@@ -103,6 +104,7 @@ impl Layer {
         };
         for output in 0..outputs {
             let (panel, lane) = (output / TILE, output % TILE);
+            // As many numbers as the sizes say, checked above; `panel` is below `outputs / TILE` rounded up.
             layer.bias[panel].0[lane] = bias[output];
             for input in 0..inputs {
                 layer.weight[panel * inputs + input].0[lane] = weight[input * outputs + output];

@@ -56,11 +56,13 @@ impl Normaliser {
             return Err(NormaliserError::Lengths { means: mean.len(), deviations: deviation.len() });
         }
         if let Some(index) = mean.iter().position(|m| !m.is_finite()) {
+            // `position` found the index.
             return Err(NormaliserError::Mean { index, found: mean[index] });
         }
         // A hair of slack, for a deviation that was clamped in double precision and rounded afterwards.
         let too_small = |d: &f32| !d.is_finite() || *d < LEAST_DEVIATION * (1.0 - 1e-6);
         if let Some(index) = deviation.iter().position(too_small) {
+            // `position` found the index, and the lists are equally long.
             return Err(NormaliserError::Deviation { index, found: deviation[index] });
         }
         Ok(Self { mean: mean.into(), deviation: deviation.into() })

@@ -10,7 +10,7 @@ use safetensors::tensor::{Dtype, SafeTensors, TensorView};
 use serde::Deserialize;
 
 use crate::excerpt::excerpt;
-use crate::format::{Manifest, PACK_VERSION, Storage};
+use crate::format::{MAX_HEADER_BYTES, MAX_PACK_BYTES, Manifest, PACK_VERSION, Storage};
 use crate::format_one::{self, ManifestOne};
 use crate::mlp::{Layer, MAX_LAYERS, Mlp};
 use crate::normaliser::Normaliser;
@@ -38,6 +38,7 @@ impl CharacterPack {
     /// When the bytes are no pack, are damaged, or anything in them is not as it must be; see [`PackError`].
     pub fn from_bytes(bytes: &[u8]) -> Result<Self, PackError> {
         let container = |e: safetensors::SafeTensorError| PackError::Container { found: excerpt(e) };
+        check_sizes(bytes)?;
         let (header_len, metadata) = SafeTensors::read_metadata(bytes).map_err(container)?;
         let json = metadata.metadata().as_ref().and_then(|m| m.get(MANIFEST_KEY));
         let manifest = manifest(json.ok_or(PackError::NoManifest)?)?;
@@ -106,6 +107,20 @@ impl CharacterPack {
     }
 }
 
+/// Bounds the file and its header before anything is allocated for them.
+fn check_sizes(bytes: &[u8]) -> Result<(), PackError> {
+    let header = bytes.first_chunk().map_or(0, |length| u64::from_le_bytes(*length));
+    let sizes = [
+        ("bytes", bytes.len() as u64, MAX_PACK_BYTES),
+        // A length that no file has room for is the container's fault.
+        ("bytes in the header", header.min(bytes.len() as u64), MAX_HEADER_BYTES),
+    ];
+    match sizes.into_iter().find(|&(_, found, most)| found > most as u64) {
+        Some((what, found, most)) => Err(PackError::TooMany { what, most, found: found as usize }),
+        None => Ok(()),
+    }
+}
+
 /// Parses the manifest, of any version that this library reads.
 fn manifest(json: &str) -> Result<Manifest, PackError> {
     /// The one field that all versions share.
@@ -138,6 +153,7 @@ fn checksum_digits(bytes: &[u8], header_len: usize) -> Option<core::ops::Range<u
 fn checksum(bytes: &[u8], header_len: usize) -> Option<String> {
     let digits = checksum_digits(bytes, header_len)?;
     let mut crc = crc32fast::Hasher::new();
+    // The digits were found inside the file.
     crc.update(&bytes[..digits.start]);
     crc.update(NO_CHECKSUM.as_bytes());
     crc.update(&bytes[digits.end..]);
@@ -238,13 +254,14 @@ impl Reader<'_> {
         storage: Storage,
     ) -> Result<Mlp, PackError> {
         if !(2..=MAX_LAYERS + 1).contains(&layers.len()) {
-            let expected = format!("of 1 to {MAX_LAYERS} layers");
+            let expected = format!("2 to {} numbers", MAX_LAYERS + 1);
             return Err(PackError::Layers { name: name.into(), expected, found: layers.into() });
         }
         let network = |source| PackError::Network { name: name.into(), source };
         let mut made = Vec::with_capacity(layers.len() - 1);
         for (i, ends) in layers.windows(2).enumerate() {
             let weight = self.numbers(tensor_name(kind, name, i, "weight"), Some(ends), storage)?;
+            // `windows(2)` gives pairs.
             let bias = self.numbers(tensor_name(kind, name, i, "bias"), Some(&ends[1..]), storage)?;
             made.push(Layer::from_input_major(ends[0], ends[1], &weight, &bias).map_err(network)?);
         }

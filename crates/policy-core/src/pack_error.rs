@@ -4,7 +4,7 @@ use alloc::string::String;
 
 use crate::action::ActionScalingError;
 use crate::graph::GraphError;
-use crate::mlp::MlpError;
+use crate::mlp::{MAX_LAYERS, MlpError};
 use crate::normaliser::NormaliserError;
 use crate::skeleton::SkeletonError;
 
@@ -139,7 +139,7 @@ pub enum PackError {
         source: MlpError,
     },
     /// A network has not the widths it must have.
-    #[error("expected network {name:?} to have the layers {expected}, found {found:?}")]
+    #[error("expected the widths of network {name:?} to be {expected}, found {}", shown(found))]
     Layers {
         /// Name of the network.
         name: String,
@@ -162,4 +162,29 @@ pub enum PackError {
     /// The graph is not valid.
     #[error("graph: {0}")]
     Graph(#[from] GraphError),
+}
+
+/// Widths of a network for a message; of many only the first.
+fn shown(widths: &[usize]) -> String {
+    match widths.get(..MAX_LAYERS + 1) {
+        Some(first) if first.len() < widths.len() => {
+            alloc::format!("{} widths, the first {first:?}", widths.len())
+        }
+        _ => alloc::format!("{widths:?}"),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use alloc::string::ToString;
+
+    use super::*;
+
+    #[test]
+    fn many_widths_are_not_all_told() {
+        let error = |found| PackError::Layers { name: "a".into(), expected: "2 to 5 numbers".into(), found };
+        let long = error(alloc::vec![7; 100_000]).to_string();
+        assert!(long.len() < 150 && long.contains("100000 widths, the first [7, 7,"), "{long}");
+        assert!(error(alloc::vec![3, 4]).to_string().ends_with("to be 2 to 5 numbers, found [3, 4]"));
+    }
 }

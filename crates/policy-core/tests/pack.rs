@@ -3,7 +3,7 @@
 mod common;
 
 use common::{manifest, pack, tensors};
-use policy_core::format::Manifest;
+use policy_core::format::{MAX_HEADER_BYTES, Manifest};
 use policy_core::training::PackTensors;
 use policy_core::{CharacterPack, PackError};
 use proptest::prelude::*;
@@ -202,4 +202,13 @@ fn messages_are_short_and_safe_for_a_terminal() {
         m.skills[0].name = m.skills[1].name.clone();
     });
     assert!(twice.contains("skill name") && !twice.contains('\u{1b}'), "{twice:?}");
+}
+
+#[test]
+fn a_header_that_would_fill_the_memory_is_refused_unread() {
+    let length = MAX_HEADER_BYTES + 1;
+    let mut bytes = (length as u64).to_le_bytes().to_vec();
+    bytes.resize(8 + length, b'[');
+    let error = CharacterPack::from_bytes(&bytes).unwrap_err();
+    assert!(matches!(error, PackError::TooMany { what: "bytes in the header", .. }), "{error}");
 }

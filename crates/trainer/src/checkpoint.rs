@@ -172,7 +172,11 @@ impl Checkpoint {
         write_keeping_previous(path, previous, &self.to_bytes().map_err(io)?).map_err(io)
     }
 
-    fn to_bytes(&self) -> std::io::Result<Vec<u8>> {
+    /// The bytes of a file.
+    ///
+    /// # Errors
+    /// When a name or a size does not fit into the format.
+    pub fn to_bytes(&self) -> std::io::Result<Vec<u8>> {
         let parts = |role: &String, t: &Trained| {
             let all =
                 [("parameters", &t.network.parameters), ("mean", &t.adam.mean), ("square", &t.adam.square)];
@@ -204,7 +208,15 @@ impl Checkpoint {
     pub fn load(path: &Path) -> Result<Self, CheckpointError> {
         let data = read_bounded(path, MOST_BYTES)
             .map_err(|source| CheckpointError::Io { path: path.to_owned(), source })?;
-        read(&data).map_err(|Wrong { expected, found }| CheckpointError::Content {
+        Self::from_bytes(path, &data)
+    }
+
+    /// Reads the bytes of a file; `path` is only named in errors.
+    ///
+    /// # Errors
+    /// When they are no whole checkpoint.
+    pub fn from_bytes(path: &Path, data: &[u8]) -> Result<Self, CheckpointError> {
+        read(data).map_err(|Wrong { expected, found }| CheckpointError::Content {
             path: path.to_owned(),
             expected,
             found,

@@ -136,3 +136,13 @@ fn the_kept_checkpoints_load() {
     }
     assert!(count > 0);
 }
+
+#[test]
+fn a_header_that_would_fill_the_memory_is_refused_unread() {
+    let path = Path::new("a.safetensors");
+    let length = 5 << 20;
+    let mut file = (length as u64).to_le_bytes().to_vec();
+    file.resize(8 + length, b'[');
+    let error = Checkpoint::from_bytes(path, &file).unwrap_err().to_string();
+    assert!(error.contains("a header of at most"), "{error}");
+}

@@ -207,6 +207,7 @@ fn discriminators(
 fn mlp(network: &Network, skill: &str, role: &'static str) -> Result<Mlp, BindError> {
     let wrong = |source| BindError::Network { skill: skill.into(), role, source };
     let layer = |range: crate::nn::LayerRange| {
+        // A checkpoint is refused whose parameters are not as many as the sizes say.
         let (weight, bias) = (&network.parameters[range.weight], &network.parameters[range.bias]);
         Layer::from_input_major(range.inputs, range.outputs, weight, bias)
     };

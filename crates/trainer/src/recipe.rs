@@ -157,12 +157,14 @@ impl Recipe {
     /// The first phase.
     #[must_use]
     pub fn first(&self) -> &Phase {
+        // A recipe without phases is refused.
         &self.phases[0]
     }
 
     /// The last phase: the settings that a skill ends with.
     #[must_use]
     pub fn last(&self) -> &Phase {
+        // A recipe without phases is refused.
         &self.phases[self.phases.len() - 1]
     }
 }

@@ -88,6 +88,12 @@ impl Dropped {
     }
 }
 
+/// What is said of a pack whose file has no checksum; `None` for others.
+#[must_use]
+pub fn word_about(pack: &CharacterPack) -> Option<&'static str> {
+    (!pack.is_verified()).then_some("the pack has no checksum: damage to its file would not be noticed")
+}
+
 /// Safetensors begin with the length of their header, eight bytes, and the header is a JSON object.
 fn looks_like_a_pack(bytes: &[u8]) -> bool {
     bytes.get(8) == Some(&b'{')

@@ -6,6 +6,7 @@ use std::time::{Instant, SystemTime};
 use image::RgbaImage;
 
 use crate::app::{App, Record};
+use crate::dropped::word_about;
 use crate::gpu::{Gpu, GpuError};
 use crate::overlay::{Overlay, Prepared};
 use crate::recorder::{self, Kind, Recorder};
@@ -93,7 +94,11 @@ impl FrameComposer {
             Ok((what, appearance)) => {
                 app.has_mesh = appearance.mesh().is_some();
                 self.renderer.set_appearance(appearance);
-                format!("Opened the {what} {name}")
+                let word = word_about(app.sim.pack()).filter(|_| what != "mesh");
+                format!(
+                    "Opened the {what} {name}{}",
+                    word.map_or_else(String::new, |word| format!(": {word}"))
+                )
             }
             Err(error) => error.to_string(),
         });

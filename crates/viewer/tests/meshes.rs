@@ -234,3 +234,15 @@ fn numbers(value: &serde_json::Value, path: String) -> Vec<String> {
         _ => Vec::new(),
     }
 }
+
+#[test]
+fn a_document_that_would_fill_the_memory_is_refused_unread() {
+    let (mut document, binary) = parts();
+    document["materials"] = vec![serde_json::json!({}); 1_000_000].into();
+    let bytes = glb(&document, &binary);
+    let error = SkinnedMesh::from_bytes(&bytes, &rig()).unwrap_err();
+    assert!(matches!(error, MeshError::TooMany { what: "bytes of JSON", .. }), "{error}");
+    // Without the four letters the parser takes it for JSON alone.
+    let error = SkinnedMesh::from_bytes(&vec![b' '; 3 << 20], &rig()).unwrap_err();
+    assert!(matches!(error, MeshError::TooMany { what: "bytes of JSON", .. }), "{error}");
+}

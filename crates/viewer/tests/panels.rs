@@ -226,7 +226,8 @@ fn a_failure_offers_rewind_and_reset() {
         app.tick();
     }
     let ticks = app.sim.ticks();
-    app.failure = Some(Failure { what: "it blew up".into(), replay: Some("x.json".into()) });
+    app.failure =
+        Some(Failure { what: "it blew up".into(), replay: Some("x.json".into()), characters: vec![0] });
     app.advance(1.0);
     assert_eq!(app.sim.ticks(), ticks, "a failed demo must wait");
     let mut harness = harness(app);
@@ -235,7 +236,7 @@ fn a_failure_offers_rewind_and_reset() {
     click(&mut harness, "Rewind and continue");
     assert_eq!(harness.state().failure, None);
     assert_eq!(harness.state().sim.history().1, 60);
-    harness.state_mut().failure = Some(Failure { what: "again".into(), replay: None });
+    harness.state_mut().failure = Some(Failure { what: "again".into(), replay: None, characters: vec![0] });
     harness.run_steps(2);
     click(&mut harness, "Start again");
     assert!(harness.state().failure.is_none() && harness.state().sim.player().position().length() < 0.1);

@@ -59,6 +59,9 @@ pub struct HostileArgs {
 /// Cases that one child reads before it is replaced.
 const CHUNK: usize = 200;
 
+/// Cases of each chunk that are as long as a reader may take.
+const FLOODS: usize = 6;
+
 /// The sound files of one reader.
 struct Subject {
     name: String,
@@ -236,8 +239,10 @@ fn make_case(setup: &Setup<'_>, subject: &Subject, case: usize, folder: &Path) -
     }
     let (_, other) = &subject.sound[random.below(subject.sound.len())];
     let path = folder.join(name);
-    fs::write(&path, mutate::mutated(sound, other, &mut random))
-        .with_context(|| format!("write {}", path.display()))?;
+    let flood = case % CHUNK < FLOODS + special::KINDS.len();
+    let bytes =
+        if flood { mutate::flooded(sound, &mut random) } else { mutate::mutated(sound, other, &mut random) };
+    fs::write(&path, bytes).with_context(|| format!("write {}", path.display()))?;
     Ok(path)
 }
 

@@ -51,6 +51,43 @@ fn structured(bytes: &[u8], random: &mut Random) -> Option<Vec<u8>> {
     Some(text::mutated(words, random).into_bytes())
 }
 
+/// Longest file of a flood, bytes: more than most readers take.
+const FLOOD_BYTES: usize = 48 << 20;
+
+/// `sound` with something small repeated until the file is as long as a reader may take: what is cheap to write and dear
+/// to keep. It goes into a list where the file has one.
+pub fn flooded(sound: &[u8], random: &mut Random) -> Vec<u8> {
+    let drop = random.one_of(&["[],", "{},", "0,", "\"\",", "[[]],", "{\"a\":[]},"]);
+    if let Some((header, rest)) = split_safetensors(sound) {
+        let header = flooded_text(&header.to_string(), drop, random);
+        return [&(header.len() as u64).to_le_bytes()[..], header.as_bytes(), rest].concat();
+    }
+    if let Some((header, rest)) = split_glb(sound) {
+        return join_glb(&flooded_text(&header.to_string(), drop, random), rest);
+    }
+    match std::str::from_utf8(sound) {
+        Ok(words) => flooded_text(words, drop, random).into_bytes(),
+        Err(_) => {
+            let at = random.below(sound.len());
+            let piece = &sound[at..(at + 1 + random.below(32)).min(sound.len())];
+            let flood = piece.repeat(FLOOD_BYTES / piece.len());
+            [&sound[..at], &flood, &sound[at..]].concat()
+        }
+    }
+}
+
+fn flooded_text(words: &str, drop: &str, random: &mut Random) -> String {
+    let lists: Vec<usize> = words.match_indices('[').map(|(at, _)| at + 1).collect();
+    let mut at = if lists.is_empty() { words.len() } else { lists[random.below(lists.len())] };
+    while !words.is_char_boundary(at) {
+        at -= 1;
+    }
+    // In a text inside a text a quotation mark is escaped; the others need no care.
+    let drop =
+        if words[..at].matches("\\\"").count() > 0 { drop.replace('"', "\\\"") } else { drop.to_owned() };
+    [&words[..at], &drop.repeat(FLOOD_BYTES / drop.len()), &words[at..]].concat()
+}
+
 /// The JSON header of a safetensors file and the bytes of its tensors.
 fn split_safetensors(bytes: &[u8]) -> Option<(Value, &[u8])> {
     let (length, rest) = bytes.split_first_chunk::<8>()?;
@@ -138,6 +175,15 @@ mod tests {
         for case in 0..40 {
             let make = || mutated(&sound, b"other", &mut Random::new(case));
             assert_eq!(make(), make(), "case {case}");
+        }
+    }
+
+    #[test]
+    fn a_flood_keeps_the_frame_and_is_as_long_as_it_may_be() {
+        for sound in [safetensors(), join_glb("{\"a\":[1]}", &[0; 8]), b"a = [1]".to_vec(), vec![200; 30]] {
+            let flood = flooded(&sound, &mut Random::new(3));
+            assert!((FLOOD_BYTES / 2..2 * FLOOD_BYTES).contains(&flood.len()), "{} bytes", flood.len());
+            assert_eq!(sound.starts_with(b"glTF"), flood.starts_with(b"glTF"));
         }
     }
 

@@ -10,13 +10,15 @@ use anyhow::{Context, Result};
 use crate::setup::remove_folder;
 use crate::workspace::answers;
 
+/// The kinds of special files.
+pub const KINDS: [&str; 5] = ["missing", "empty", "folder", "endless", "pipe"];
+
 /// Makes the special file number `case` below `folder`, under a folder of its kind so that it keeps the ending of `name`.
 /// None when there are no more.
 ///
 /// # Errors
 /// When it cannot be made.
 pub fn make(case: usize, folder: &Path, name: &OsStr) -> Result<Option<PathBuf>> {
-    const KINDS: [&str; 5] = ["missing", "empty", "folder", "endless", "pipe"];
     let Some(kind) = KINDS.get(case) else { return Ok(None) };
     let home = folder.join(kind);
     remove_folder(&home)?;

@@ -135,16 +135,43 @@ fn record(file: &Path, seconds: f64) -> Result<ExitCode> {
             errors.len()
         );
     };
-    let out = File::create(file).with_context(|| format!("cannot write {}", file.display()))?;
+    let cannot_write = || format!("cannot write {}", file.display());
+    let unfinished = Unfinished::beside(file);
+    let out = File::create_new(&unfinished.0).with_context(cannot_write)?;
     gamepads.record(key, Box::new(BufWriter::new(out)))?;
     eprintln!("Recording {name} for {seconds} s to {}.", file.display());
     watch(&mut gamepads, seconds, |gamepads| Ok(gamepads.pad_mut(key).is_none()))?;
     if let Some(pad) = gamepads.pad_mut(key) {
-        pad.stop_recording().with_context(|| format!("cannot write {}", file.display()))?;
+        pad.stop_recording().with_context(cannot_write)?;
     } else {
         eprintln!("The pad was disconnected; the recording ends there.");
     }
+    unfinished.become_whole(file).with_context(cannot_write)?;
     Ok(ExitCode::SUCCESS)
+}
+
+/// A recording on its way, beside its file; removed when it does not get there.
+struct Unfinished(PathBuf);
+
+impl Unfinished {
+    fn beside(file: &Path) -> Self {
+        let name = file.file_name().unwrap_or_default().to_string_lossy();
+        Self(file.with_file_name(format!(".{name}.{}.partial", std::process::id())))
+    }
+
+    /// Takes the place of `file` once all of it can be read.
+    fn become_whole(self, file: &Path) -> Result<()> {
+        Recording::load(&self.0)?;
+        File::open(&self.0)?.sync_all()?;
+        Ok(std::fs::rename(&self.0, file)?)
+    }
+}
+
+impl Drop for Unfinished {
+    fn drop(&mut self) {
+        // The error that led here is told; after a rename there is nothing to remove.
+        let _ = std::fs::remove_file(&self.0);
+    }
 }
 
 fn play(file: &Path) -> Result<ExitCode> {

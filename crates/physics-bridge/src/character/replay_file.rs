@@ -146,13 +146,13 @@ impl ReplayFile {
         Ok(Self { mjcf: mjcf.into(), skeleton, control_hz, terrain, settings, snapshot })
     }
 
-    /// Writes a file.
+    /// Writes a file, whole or not at all: after an error the file is as it was.
     ///
     /// # Errors
     /// When the system refuses.
     pub fn save(&self, path: impl AsRef<Path>) -> Result<(), ReplayFileError> {
         let path = path.as_ref();
-        std::fs::write(path, self.to_bytes())
+        file::write_whole(path, &self.to_bytes())
             .map_err(|source| ReplayFileError::Access { path: path.to_owned(), source })
     }
 

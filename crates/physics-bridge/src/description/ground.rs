@@ -88,6 +88,7 @@ impl Ground {
         let floor = model
             .name_to_id(MjtObjBase::mjOBJ_GEOM, FLOOR)
             .ok_or_else(|| ModelError::Missing { kind: "geom", name: FLOOR.into() })?;
+        // MuJoCo has compiled the model: what it says of its parts are indices of its own arrays.
         let is_level = model.geom_type()[floor] == MjtGeomBase::mjGEOM_PLANE
             && model.geom_bodyid()[floor] == 0
             && model.geom_quat()[floor] == [1.0, 0.0, 0.0, 0.0];

@@ -126,6 +126,7 @@ fn place(model: &MjModel, name: &str, body: BodyId) -> Result<JointPlace, ModelE
         if fits { Ok(()) } else { Err(ModelError::Kind { kind: "motor of joint", name, expected }) }
     };
     expect(motors.next().is_none(), "one motor alone")?;
+    // MuJoCo has compiled the model: what it says of its parts are indices of its own arrays.
     let [offset, position, velocity, ..] = model.actuator_biasprm()[actuator];
     let is_servo = model.actuator_gaintype()[actuator] == MjtGain::mjGAIN_FIXED
         && model.actuator_biastype()[actuator] == MjtBias::mjBIAS_AFFINE

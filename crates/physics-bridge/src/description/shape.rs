@@ -46,6 +46,7 @@ pub enum ShapeKind {
 /// Every sphere, capsule and box of the bodies, each with MuJoCo's id of it; other geoms are left out.
 pub(crate) fn shapes(model: &MjModel, layout: &Layout) -> (Box<[Shape]>, Box<[usize]>) {
     let shape = |geom: usize| {
+        // MuJoCo has compiled the model: what it says of its parts are indices of its own arrays.
         let body = layout.bodies[model.geom_bodyid()[geom] as usize]?;
         let size = model.geom_size()[geom].map(|s| s as f32);
         let kind = match model.geom_type()[geom] {

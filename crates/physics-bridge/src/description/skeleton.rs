@@ -33,6 +33,7 @@ pub(super) fn derive(model: &MjModel) -> Result<Skeleton, ModelError> {
     let mut ids: Vec<Option<BodyId>> = vec![None; model.nbody() as usize];
     let mut bodies = Vec::new();
     for body in root..model.nbody() as usize {
+        // MuJoCo has compiled the model: what it says of its parts are indices of its own arrays.
         let parent = ids[model.body_parentid()[body] as usize];
         if body != root && parent.is_none() {
             continue;

@@ -21,6 +21,7 @@ pub fn floats(view: &TensorView<'_>, count: usize) -> Option<Vec<f32>> {
     let data = view.data();
     let values: Vec<f32> = match view.dtype() {
         Dtype::F32 if data.len() == 4 * count => {
+            // `chunks_exact` gives chunks of that length.
             data.chunks_exact(4).map(|b| f32::from_le_bytes([b[0], b[1], b[2], b[3]])).collect()
         }
         Dtype::F16 if data.len() == 2 * count => {

@@ -15,6 +15,9 @@ const EMA_OF_VERSION_1: &str = "average";
 /// Most networks of a checkpoint.
 const MOST_NETWORKS: usize = 256;
 
+/// Longest header, bytes: metadata, names and shapes. The parser takes many times as much.
+const MOST_HEADER: u64 = 4 << 20;
+
 /// Most layers of a network, and most units of a layer.
 const MOST_LAYERS: usize = 16;
 const MOST_UNITS: usize = 1 << 14;
@@ -32,6 +35,10 @@ fn wrong(expected: impl Into<String>, found: impl Into<String>) -> Wrong {
 /// Parses the bytes of a checkpoint. Nothing is allocated before its size is compared with that of the file.
 pub(super) fn read(data: &[u8]) -> Result<Checkpoint, Wrong> {
     let not_safe = |e: safetensors::SafeTensorError| wrong("a whole safetensors file", e.to_string());
+    let header = data.first_chunk().map_or(0, |length| u64::from_le_bytes(*length));
+    if header.min(data.len() as u64) > MOST_HEADER {
+        return Err(wrong(format!("a header of at most {MOST_HEADER} bytes"), header.to_string()));
+    }
     let (_, meta) = SafeTensors::read_metadata(data).map_err(not_safe)?;
     let text = meta.metadata().as_ref().and_then(|m| m.get("progress"));
     let text = text.ok_or_else(|| wrong("metadata `progress`", "none"))?;

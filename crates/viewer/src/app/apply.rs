@@ -100,7 +100,12 @@ impl App {
             ViewerCommand::RewindAfterFailure => {
                 let (kept, _) = self.sim.history();
                 self.sim.rewind_to(((REWIND_SECS / self.sim.tick_secs()).round() as usize).min(kept));
-                self.failure = None;
+                // Those that keep no history are still in the state that diverged.
+                for index in self.failure.take().map_or_else(Vec::new, |failure| failure.characters) {
+                    if self.sim.character(index).history_len() == 0 {
+                        self.sim.stand_up(index);
+                    }
+                }
             }
             ViewerCommand::ResetAfterFailure => {
                 self.failure = None;

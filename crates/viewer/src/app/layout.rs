@@ -104,17 +104,24 @@ impl PanelLayout {
     /// When the file can't be read, is no layout, or is of another version.
     pub fn load(path: &Path) -> Result<Self, LayoutError> {
         let file = |source| LayoutError::File { path: path.to_owned(), source };
-        let text = |message| LayoutError::Text { path: path.to_owned(), message };
         if !path.exists() {
             return Ok(Self::default());
         }
-        let bytes = files::read(path, MOST_BYTES).map_err(file)?;
-        let content = String::from_utf8(bytes).map_err(|e| text(e.to_string()))?;
-        let versioned: Versioned = ron::from_str(&content).map_err(|e| text(e.to_string()))?;
+        Self::from_bytes(path, &files::read(path, MOST_BYTES).map_err(file)?)
+    }
+
+    /// Reads the bytes of a layout; `path` is only named in errors.
+    ///
+    /// # Errors
+    /// When they are no layout, or one of another version.
+    pub fn from_bytes(path: &Path, bytes: &[u8]) -> Result<Self, LayoutError> {
+        let text = |message| LayoutError::Text { path: path.to_owned(), message };
+        let content = std::str::from_utf8(bytes).map_err(|e| text(e.to_string()))?;
+        let versioned: Versioned = ron::from_str(content).map_err(|e| text(e.to_string()))?;
         if versioned.version != LAYOUT_VERSION {
             return Err(LayoutError::Version { path: path.to_owned(), found: versioned.version });
         }
-        ron::from_str(&content).map_err(|e| text(e.to_string()))
+        ron::from_str(content).map_err(|e| text(e.to_string()))
     }
 
     /// Writes the layout, with its folder.
@@ -122,11 +129,19 @@ impl PanelLayout {
     /// # Errors
     /// When that fails.
     pub fn save(&self, path: &Path) -> Result<(), LayoutError> {
-        let pretty = ron::ser::to_string_pretty(self, ron::ser::PrettyConfig::default());
-        let content =
-            pretty.map_err(|e| LayoutError::Text { path: path.to_owned(), message: e.to_string() })?;
+        let content = self
+            .to_text()
+            .map_err(|e| LayoutError::Text { path: path.to_owned(), message: e.to_string() })?;
         files::write(path, content.as_bytes())
             .map_err(|source| LayoutError::File { path: path.to_owned(), source: source.into() })
+    }
+
+    /// The text of a file.
+    ///
+    /// # Errors
+    /// When a preset can't be written as RON.
+    pub fn to_text(&self) -> Result<String, ron::Error> {
+        ron::ser::to_string_pretty(self, ron::ser::PrettyConfig::default())
     }
 
     /// The side of an open panel.

@@ -56,6 +56,8 @@ pub struct Failure {
     pub what: String,
     /// The replay file: the state before it.
     pub replay: Option<String>,
+    /// Indices of the characters that it happened to.
+    pub characters: Vec<usize>,
 }
 
 /// The demo.
@@ -174,8 +176,9 @@ impl App {
         }
         if self.failure.is_none() {
             for _ in 0..self.clock.ticks_due(dt) {
-                if let Some(divergence) = self.tick().first() {
-                    self.fail(divergence);
+                let divergences = self.tick();
+                if let Some(first) = divergences.first() {
+                    self.fail(first, &divergences);
                     break;
                 }
             }
@@ -240,11 +243,16 @@ impl App {
         keys::release(ui.ctx(), self);
     }
 
-    fn fail(&mut self, divergence: &Divergence) {
+    /// Tells of all divergences of a tick at once, in the words of the first.
+    fn fail(&mut self, first: &Divergence, all: &[Divergence]) {
         let path = std::env::temp_dir().join("policy-space-diverged.json");
-        let replay = divergence.replay.save(&path).is_ok().then(|| path.display().to_string());
-        let what = format!("character {}: {}", divergence.character, divergence.what);
-        self.failure = Some(Failure { what, replay });
+        let replay = first.replay.save(&path).is_ok().then(|| path.display().to_string());
+        let mut what = format!("character {}: {}", first.character, first.what);
+        if all.len() > 1 {
+            what += &format!(" (and {} more characters)", all.len() - 1);
+        }
+        let characters = all.iter().map(|divergence| divergence.character).collect();
+        self.failure = Some(Failure { what, replay, characters });
     }
 
     /// Pulls the body that the mouse holds.

@@ -8,7 +8,7 @@ fn main() -> anyhow::Result<()> {
     let path =
         std::env::args_os().nth(1).map(PathBuf::from).context("expected the path of the file to write")?;
     let bytes = viewer::mannequin::generate();
-    std::fs::write(&path, &bytes).with_context(|| format!("cannot write {}", path.display()))?;
+    viewer::files::write(&path, &bytes).with_context(|| format!("cannot write {}", path.display()))?;
     println!("{}: {} bytes", path.display(), bytes.len());
     Ok(())
 }

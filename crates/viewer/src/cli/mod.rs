@@ -180,8 +180,13 @@ pub fn trace(app: &App) {
         player.speed(),
         if player.is_down() { " down" } else { "" },
     );
+    remark(&line);
+}
+
+/// Writes a line to standard error.
+fn remark(line: &str) {
     // Where standard error is closed there is no other place for it.
-    let _ = writeln!(std::io::stderr(), "{}", text::printable(&line, LONGEST_LINE));
+    let _ = writeln!(std::io::stderr(), "{}", text::printable(line, LONGEST_LINE));
 }
 
 #[cfg(test)]

@@ -4,6 +4,7 @@ use std::path::PathBuf;
 
 use super::{Demo, load};
 use crate::app::{App, PanelKind, PanelLayout, Side};
+use crate::dropped::word_about;
 use crate::render::Appearance;
 use crate::sim::{Playback, SimConfig, Simulation};
 
@@ -45,6 +46,13 @@ pub fn open(demo: &Demo) -> anyhow::Result<Opened> {
         layout.open.extend(list.0.iter().copied().zip([Side::Left, Side::Right].into_iter().cycle()));
     }
     let pack = load::pack(demo.character.as_deref())?;
+    // The pack inside the demo is checked with the program.
+    let word = demo.character.as_ref().and_then(|_| word_about(&pack));
+    if demo.headless {
+        word.into_iter().for_each(super::remark);
+    } else {
+        notices.extend(word.map(str::to_owned));
+    }
     let config = SimConfig {
         ground: demo.terrain,
         characters: demo.characters,

@@ -36,6 +36,7 @@ impl Binding {
             let mut matrix = Mat4::IDENTITY;
             let mut body = None;
             for ancestor in chain(&parents, node)? {
+                // Every index of a node is below their number: the gltf crate has checked children.
                 matrix = Mat4::from_cols_array_2d(&nodes[ancestor].transform().matrix()) * matrix;
                 body = body.or(named[ancestor]);
             }

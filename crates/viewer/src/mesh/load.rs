@@ -66,6 +66,7 @@ fn skin_joints(
     skin.joints()
         .zip(inverse_bind)
         .map(|(node, inverse_bind)| {
+            // The binding has an entry for every node, and the gltf crate has checked the joints of skins.
             let world_from_mesh = binding.world_from_node[node.index()] * inverse_bind;
             joint(binding, binding.body_of_node[node.index()], world_from_mesh)
         })
@@ -112,6 +113,7 @@ fn rigid_level(checked: &Checked<'_>, binding: &Binding) -> Result<(Vec<Joint>, 
         }
         let follow = Follow::One { joint: joints.len() as u8 };
         append(&mut whole, level(checked, &mesh, follow)?);
+        // The binding has an entry for every node and for every body.
         let body = binding.body_of_node[node.index()];
         joints.push(joint(binding, body, binding.world_from_node[node.index()])?);
     }

@@ -7,9 +7,12 @@ use super::{MAX_MESH_BYTES, MeshError};
 
 /// Most nodes, meshes, accessors or buffer views of a document.
 const MOST_PARTS: usize = 4096;
-/// Bytes of the header of a `.glb`, and where its total length is.
+/// Longest JSON of a document, bytes. The parser takes a hundred times as much for empty parts.
+const MOST_JSON: usize = 2 << 20;
+/// Bytes of the header of a `.glb`, and where its total length and that of the JSON are.
 const HEADER_BYTES: u32 = 12;
 const LENGTH_AT: usize = 8;
+const JSON_LENGTH_AT: usize = 12;
 
 pub(super) fn parse(bytes: &[u8]) -> Result<gltf::Gltf, MeshError> {
     if bytes.len() as u64 > MAX_MESH_BYTES {
@@ -24,16 +27,28 @@ pub(super) fn parse(bytes: &[u8]) -> Result<gltf::Gltf, MeshError> {
     Ok(gltf::Gltf { document, blob: parsed.blob })
 }
 
-/// The gltf crate subtracts the size of the header from the length that the header says.
+/// The gltf crate subtracts the size of the header from the length that the header says. What is no `.glb` is parsed as
+/// JSON alone.
 fn check_header(bytes: &[u8]) -> Result<(), MeshError> {
-    let length = bytes.get(LENGTH_AT..).and_then(|rest| rest.first_chunk()).map(|b| u32::from_le_bytes(*b));
-    match length {
-        Some(found) if bytes.starts_with(b"glTF") && found < HEADER_BYTES => {
+    let word = |at| bytes.get(at..).and_then(|rest| rest.first_chunk()).map(|b| u32::from_le_bytes(*b));
+    if !bytes.starts_with(b"glTF") {
+        return check_json(bytes.len());
+    }
+    match word(LENGTH_AT) {
+        Some(found) if found < HEADER_BYTES => {
             let (expected, found) = (HEADER_BYTES.into(), found.into());
             Err(MeshError::Truncated { what: "file", index: 0, expected, found })
         }
-        _ => Ok(()),
+        // A length that the file has no room for is told by the parser.
+        _ => check_json(word(JSON_LENGTH_AT).map_or(0, |length| length as usize).min(bytes.len())),
     }
+}
+
+fn check_json(found: usize) -> Result<(), MeshError> {
+    if found > MOST_JSON {
+        return Err(MeshError::TooMany { what: "bytes of JSON", most: MOST_JSON, found });
+    }
+    Ok(())
 }
 
 fn check_counts(root: &Root) -> Result<(), MeshError> {

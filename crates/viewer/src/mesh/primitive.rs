@@ -40,6 +40,7 @@ impl Primitive<'_, '_> {
         }
         let (joints, shares) = self.follow(follow, count)?;
         let colours = self.colours(count)?;
+        // Each list has `count` elements: attributes of another number were refused, and absent ones are filled up.
         let vertices = (0..count)
             .map(|i| MeshVertex {
                 position: positions[i],
@@ -167,6 +168,7 @@ fn bytes_of_shares(shares: &[f32; 4]) -> Option<[u8; 4]> {
     let mut bytes = shares.map(|s| (s / total * 255.0) as u8);
     let sum: u32 = bytes.iter().map(|&b| u32::from(b)).sum();
     let largest = (0..4).fold(0, |best, i| if bytes[i] > bytes[best] { i } else { best });
+    // Rounded down, they sum to 255 at most, so that the rest fits.
     bytes[largest] += (255 - sum) as u8;
     Some(bytes)
 }

@@ -9,6 +9,9 @@ use crate::text::cut;
 
 const FIELDS: [&str; 4] = ["format", "clip", "hz", "qpos"];
 
+/// Numbers of a pose that is too long that are counted for the message.
+const MOST_COUNTED: usize = 1000;
+
 /// The whole file.
 pub(super) struct File {
     pub(super) qpos_len: usize,
@@ -200,6 +203,9 @@ impl<'de> Visitor<'de> for Row {
                 row.push(number);
             }
             count += 1;
+            if count > MOST_COUNTED.max(self.length) {
+                break;
+            }
         }
         if count == self.length { Ok(row) } else { Err(de::Error::invalid_length(count, &self)) }
     }

@@ -32,12 +32,13 @@ pub(super) fn mp4(
 ) -> Result<(), RecorderError> {
     let file = |source| RecorderError::File { path: path.to_owned(), source };
     folder_at(path.parent().unwrap_or(Path::new(".")))?;
+    let unfinished = Unfinished(path.with_extension(format!("{}.partial", std::process::id())));
     let mut ffmpeg: Child = Command::new("ffmpeg")
         .args(["-y", "-loglevel", "error", "-f", "rawvideo", "-pix_fmt", "rgba"])
         .args(["-s", &format!("{width}x{height}"), "-r", &fps.to_string(), "-i", "-"])
         // H.264 wants even sizes.
-        .args(["-vf", "crop=trunc(iw/2)*2:trunc(ih/2)*2", "-pix_fmt", "yuv420p"])
-        .arg(path)
+        .args(["-vf", "crop=trunc(iw/2)*2:trunc(ih/2)*2", "-pix_fmt", "yuv420p", "-f", "mp4"])
+        .arg(&unfinished.0)
         .stdin(Stdio::piped())
         .stdout(Stdio::null())
         .stderr(Stdio::null())
@@ -58,8 +59,18 @@ pub(super) fn mp4(
         }
     }
     match ffmpeg.wait() {
-        Ok(status) if status.success() => Ok(()),
+        Ok(status) if status.success() => std::fs::rename(&unfinished.0, path).map_err(file),
         _ => Err(RecorderError::Ffmpeg { path: path.to_owned() }),
+    }
+}
+
+/// A film on its way, beside its file; removed when it does not get there.
+struct Unfinished(PathBuf);
+
+impl Drop for Unfinished {
+    fn drop(&mut self) {
+        // The error that led here is returned; after a rename there is nothing to remove.
+        let _ = std::fs::remove_file(&self.0);
     }
 }
 

@@ -1,15 +1,20 @@
 //! What changes a world between ticks: resets, settings, blend modes, ghosts, going back in time.
 
-use physics_bridge::Settings;
+use physics_bridge::{MAX_DISTANCE_M, Settings};
 use policy_core::{BlendMode, GamepadState, GraphPosition, Heading};
 
 use super::{Ghost, LEAST_FRICTION, SimError, Simulation};
 
+/// Way that a character must have before the end of the world, metres.
+const ROOM_M: f32 = 100.0;
+
 impl Simulation {
-    /// Stands a character up where it is.
+    /// Stands a character up where it is, or at its start when that is so far away that it would diverge again.
     pub fn stand_up(&mut self, index: usize) {
         let (at, heading) = (self.steered[index].position(), self.steered[index].heading());
-        let at = if at.is_finite() { at } else { self.config.start_of(index) };
+        // Also for a place that is no number.
+        let near = at.length() < MAX_DISTANCE_M - ROOM_M;
+        let at = if near { at } else { self.config.start_of(index) };
         if self.crowd.character_mut(index).stand_at(at.x, at.y, heading, 0.0).is_ok() {
             self.totals.stood_up += 1;
             self.restart(index);

@@ -156,6 +156,7 @@ fn checked_product(
     let mut product = 1.0;
     for word in value.split_ascii_whitespace() {
         let (digits, unit) = match word.as_bytes().last() {
+            // The last byte is one of ASCII, so the word can be cut before it.
             Some(b'K') => (&word[..word.len() - 1], f64::from(1 << 10)),
             Some(b'M') => (&word[..word.len() - 1], f64::from(1 << 20)),
             Some(b'G') => (&word[..word.len() - 1], f64::from(1 << 30)),

@@ -71,6 +71,7 @@ impl<'a> Tags<'a> {
         let start = self.rest;
         loop {
             self.skip_space()?;
+            // `rest` is what is left of `start`.
             let attributes = Attributes { rest: &start[..start.len() - self.rest.len()] };
             if self.rest.starts_with("/>") {
                 self.skip(2)?;
@@ -117,6 +118,7 @@ impl<'a> Tags<'a> {
 
     /// Skips to behind the next `end` that begins at `from` or later.
     fn skip_past(&mut self, from: usize, end: &str, expected: &'static str) -> Result<(), ModelError> {
+        // Callers pass the length of ASCII that `rest` starts with.
         match self.rest[from..].find(end) {
             Some(at) => self.skip(from + at + end.len()),
             None => Err(self.error(expected)),
@@ -156,6 +158,7 @@ impl<'a> Iterator for Attributes<'a> {
         let (name, text) = text.split_once('=')?;
         let text = text.trim_start_matches(is_space);
         let quote = text.chars().next()?;
+        // `quote` is the first character of `text`.
         let (value, rest) = text[quote.len_utf8()..].split_once(quote)?;
         self.rest = rest;
         Some((name.trim_end_matches(is_space), value))

@@ -137,6 +137,7 @@ impl Model {
         let (shapes, shape_geoms) = shapes(&base, &layout);
         let mut stand = Pose::new(&skeleton);
         let qpos = match base.name_to_id(MjtObjBase::mjOBJ_KEY, STAND) {
+            // The layout fits, so a keyframe has as many numbers as our pose.
             Some(key) => &base.key_qpos()[key * stand.qpos.len()..],
             None => base.qpos0(),
         };
