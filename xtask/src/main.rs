@@ -3,10 +3,12 @@
 //! Depends on nothing that links libmujoco, because it has to run before libmujoco is there.
 
 mod bench;
+mod capi;
 mod checks;
 mod demo;
 mod fuzz;
 mod hostile;
+mod onnx;
 mod setup;
 mod workspace;
 
@@ -51,8 +53,14 @@ enum Verb {
     ///
     /// Installs the pinned cargo-deny in third_party/tools first; this takes about two minutes, once.
     Deny,
+    /// Build the C interface and install header, libraries and pkg-config file.
+    Capi(capi::CapiArgs),
     /// Measure, and print a table or one JSON object.
     Bench(bench::BenchArgs),
+    /// Export the shipped pack as ONNX models and compare ONNX Runtime and tract with policy-core.
+    ///
+    /// ONNX Runtime comes from its Python wheel, pinned by hash. tract takes some minutes to compile.
+    Onnx,
     /// Feed random bytes to the parsers. Needs a nightly toolchain and cargo-fuzz.
     Fuzz(fuzz::FuzzArgs),
     /// Give broken files to every reader, and report panics, aborts, hangs and too much memory.
@@ -120,7 +128,16 @@ fn dispatch(verb: Verb) -> Result<ExitCode> {
         Verb::Imports => checks::imports::check(&workspace)?,
         Verb::Words => checks::words::check(&workspace)?,
         Verb::Deny => return Ok(checks::run(&workspace, checks::DENY, false)),
+        Verb::Capi(arguments) if arguments.check => {
+            setup::prepare(&workspace, Purpose::Tests, false)?;
+            return Ok(checks::run(&workspace, checks::C_INTERFACE, false));
+        }
+        Verb::Capi(arguments) => capi::run(&workspace, &arguments)?,
         Verb::Bench(arguments) => bench::run(&workspace, &arguments)?,
+        Verb::Onnx => {
+            setup::prepare(&workspace, Purpose::Demo, true)?;
+            onnx::run(&workspace)?;
+        }
         Verb::Fuzz(arguments) => fuzz::run(&workspace, &arguments)?,
         Verb::Hostile(arguments) => hostile::run(&workspace, &arguments)?,
         Verb::Pad { arguments } => {

@@ -7,6 +7,7 @@ pub mod env;
 pub mod lineage;
 pub mod nn;
 pub mod normaliser_file;
+pub mod onnx;
 pub mod pack;
 mod parts;
 pub mod plot;

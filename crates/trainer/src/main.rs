@@ -56,6 +56,10 @@ enum Verb {
     Pca(cli::pca::Arguments),
     /// Draws strips of each skill beside its clip.
     Strip(cli::strip::Arguments),
+    /// Writes the policies and paths of a pack as ONNX models.
+    Export(cli::export::Arguments),
+    /// Puts policies from ONNX models into a pack.
+    Import(cli::import::Arguments),
     /// Fits a clip, tells how well it fits, and writes its poses.
     View(cli::view::Arguments),
 }
@@ -93,6 +97,8 @@ fn run(arguments: &Arguments) -> Result<ExitCode> {
         }
         Verb::Compare(verb) => cli::compare::run(verb),
         Verb::Pca(verb) => cli::pca::run(&arguments.model()?, verb),
+        Verb::Export(verb) => cli::export::run(verb),
+        Verb::Import(verb) => cli::import::run(verb),
         Verb::Strip(verb) => {
             cli::strip::run(&arguments.model()?, &arguments.recipes, &arguments.clips()?, verb)
         }

@@ -32,6 +32,7 @@ const RULES: &[Rule] = &[
     rule("gamepad", &["policy-core"], &[]),
     rule("physics-bridge", &["policy-core"], &[]),
     rule("physics-rapier", &["policy-core"], &[]),
+    rule("policy-capi", &["policy-core"], &[]),
     rule("files", &[], &[]),
     rule("pca", &[], &[]),
     rule("random", &["physics-bridge"], &["policy-core"]),

@@ -1,5 +1,6 @@
 //! Every check that CI runs, quick ones first. All of them run, whatever fails; a table says how each ended.
 
+mod c_interface;
 mod definitions;
 mod deny;
 pub mod imports;
@@ -11,7 +12,7 @@ use std::time::{Duration, Instant};
 
 use anyhow::Result;
 
-pub use steps::{ALL, DENY};
+pub use steps::{ALL, C_INTERFACE, DENY};
 
 use crate::workspace::Workspace;
 

@@ -5,7 +5,7 @@ use std::process::Command;
 
 use anyhow::Result;
 
-use super::{Step, Verdict, deny, imports, words};
+use super::{Step, Verdict, c_interface, deny, imports, words};
 use crate::workspace::{Workspace, answers, output_of, run};
 
 /// The checks that cargo-deny does.
@@ -13,6 +13,11 @@ pub const DENY: &[Step] = &[RULES, ADVISORIES];
 
 const RULES: Step = Step { name: "licences, bans, sources", run: deny::rules };
 const ADVISORIES: Step = Step { name: "security advisories", run: deny::advisories };
+
+/// The check of the C interface.
+pub const C_INTERFACE: &[Step] = &[C_PROGRAM];
+
+const C_PROGRAM: Step = Step { name: "C interface: gcc, clang", run: c_interface::check };
 
 /// All checks in the order in which they run: quick ones first, the tests last, so that a run ends with theirs.
 pub const ALL: &[Step] = &[
@@ -28,6 +33,7 @@ pub const ALL: &[Step] = &[
     Step { name: "no_std: thumbv7em", run: |workspace| no_std(workspace, "thumbv7em-none-eabihf") },
     Step { name: "bits without vector units", run: plain_bits },
     Step { name: "clippy", run: clippy },
+    C_PROGRAM,
     Step { name: "documentation", run: documentation },
     Step { name: "tests", run: tests },
 ];

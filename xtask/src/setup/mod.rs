@@ -36,6 +36,13 @@ pub fn prepare(workspace: &Workspace, purpose: Purpose, install: bool) -> Result
     Installation::new(&pins::MUJOCO, workspace.third_party())?.ensure().context("set-up of libmujoco")
 }
 
+/// Folders of libmujoco's library and of its headers. [`prepare`] has to run before.
+pub fn mujoco_folders(workspace: &Workspace) -> (PathBuf, PathBuf) {
+    let library = foreign_folder(workspace).unwrap_or_else(|| workspace.third_party().join("mujoco/lib"));
+    let headers = library.parent().unwrap_or(Path::new(".")).join("include");
+    (library, headers)
+}
+
 /// Fetches ONNX Runtime, which only the benchmark of peers uses, and returns its library file.
 ///
 /// # Errors

@@ -38,9 +38,14 @@ const BASE: [Package; 10] = [
     package("libxkbcommon-x11-0", "the window"),
 ];
 
-/// What the tests use beyond that; they skip, with a message, what they cannot do without.
-const WINDOW_TESTS: [Package; 2] =
-    [package("xvfb", "the tests in a real window"), package("xdotool", "the tests in a real window")];
+/// What the tests use beyond that. Without the first two they skip something, with a message; without the others the check of
+/// the C interface fails.
+const TESTS: [Package; 4] = [
+    package("xvfb", "the tests in a real window"),
+    package("xdotool", "the tests in a real window"),
+    package("clang", "the check of the C interface"),
+    package("pkg-config", "the check of the C interface"),
+];
 
 /// What a verb is about to do, which decides what it needs.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -61,7 +66,7 @@ pub fn prepare(purpose: Purpose, install: bool) {
     }
     let needed: Vec<Package> = match purpose {
         Purpose::Demo => BASE.to_vec(),
-        Purpose::Tests => BASE.iter().chain(&WINDOW_TESTS).copied().collect(),
+        Purpose::Tests => BASE.iter().chain(&TESTS).copied().collect(),
     };
     let Some(listing) = dpkg_listing(&needed) else {
         if !has_vulkan_loader() {
@@ -118,6 +123,7 @@ fn works_without(package: &Package) -> bool {
     match package.name {
         "gcc" => answers(Command::new("cc").arg("--version")),
         "python3-pip" => python_with_pip().is_some(),
+        "clang" | "pkg-config" => answers(Command::new(package.name).arg("--version")),
         _ => false,
     }
 }

@@ -3,6 +3,8 @@
 pub(crate) mod average;
 pub(crate) mod compare;
 pub(crate) mod evaluate;
+pub(crate) mod export;
+pub(crate) mod import;
 pub(crate) mod interrupt;
 pub(crate) mod keep;
 pub(crate) mod load;

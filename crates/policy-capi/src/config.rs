@@ -1,0 +1,127 @@
+//! Choices that are made once for a controller.
+
+use std::mem::MaybeUninit;
+
+use policy_core::{Arithmetic, BlendMode, CharacterPack, ControllerConfig, NodeId, TurnAssist};
+
+use crate::border::{finite, id, index, present};
+use crate::error::{PsStatus, fail, guard};
+
+/// How a blend of policies becomes one action.
+#[repr(i32)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum PsBlendMode {
+    /// Interpolate the parameters: the method of the paper.
+    Parameters = 0,
+    /// Evaluate every policy and interpolate their actions.
+    Actions = 1,
+    /// The policy with the greatest blend weight alone.
+    Switch = 2,
+}
+
+/// How products are summed.
+#[repr(i32)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum PsArithmetic {
+    /// The same bits on every machine.
+    Reproducible = 0,
+    /// Fused multiply-add where the processor has it.
+    Fused = 1,
+}
+
+/// Choices that are made once for a controller. Fill it with ps_config_default, then change what you want.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct PsConfig {
+    /// PsArithmetic.
+    pub arithmetic: i32,
+    /// PsBlendMode.
+    pub blend_mode: i32,
+    /// Not 0: cache the parameters of a resting blend, as large as one policy.
+    pub cache_blends: i32,
+    /// Not 0: start the recovery skill when the character has fallen.
+    pub auto_recover: i32,
+    /// Not 0: start it too when standing up out of a low gait takes longer than 0.8 s.
+    pub assist_rise: i32,
+    /// Node to start at.
+    pub start_node: i32,
+    /// Time over which joint targets pass from one policy to the other when a skill starts or ends, seconds; 0 for a jump.
+    pub handover_secs: f32,
+    /// Not 0: slow down fast gaits while the target lies far off the heading.
+    pub turn_assist: i32,
+    /// Angle from which the turn assist acts, radians.
+    pub turn_begin_radians: f32,
+    /// Angle from which it acts fully, radians; more than turn_begin_radians.
+    pub turn_full_radians: f32,
+}
+
+impl Default for PsConfig {
+    fn default() -> Self {
+        let (config, turn) = (ControllerConfig::default(), TurnAssist::default());
+        Self {
+            arithmetic: match config.arithmetic {
+                Arithmetic::Reproducible => PsArithmetic::Reproducible as i32,
+                Arithmetic::Fused => PsArithmetic::Fused as i32,
+            },
+            blend_mode: match config.blend_mode {
+                BlendMode::Parameters => PsBlendMode::Parameters as i32,
+                BlendMode::Actions => PsBlendMode::Actions as i32,
+                BlendMode::Switch => PsBlendMode::Switch as i32,
+            },
+            cache_blends: config.cache_blends.into(),
+            auto_recover: config.auto_recover.into(),
+            assist_rise: config.assist_rise.into(),
+            start_node: id(config.start.index()),
+            handover_secs: config.handover_secs,
+            turn_assist: config.turn_assist.is_some().into(),
+            turn_begin_radians: turn.begin_radians,
+            turn_full_radians: turn.full_radians,
+        }
+    }
+}
+
+impl PsConfig {
+    /// The choices for a controller of `pack`.
+    pub(crate) fn checked(&self, pack: &CharacterPack) -> Result<ControllerConfig, PsStatus> {
+        let arithmetic =
+            [Arithmetic::Reproducible, Arithmetic::Fused][index("kind of arithmetic", self.arithmetic, 2)?];
+        let turn = TurnAssist {
+            begin_radians: finite("turn_begin_radians", self.turn_begin_radians)?,
+            full_radians: finite("turn_full_radians", self.turn_full_radians)?,
+        };
+        if self.turn_assist != 0 && turn.begin_radians >= turn.full_radians {
+            let TurnAssist { begin_radians, full_radians } = turn;
+            let text = format_args!("expected turn_full_radians above {begin_radians}, found {full_radians}");
+            return Err(fail(PsStatus::BadNumber, text));
+        }
+        if finite("handover_secs", self.handover_secs)? < 0.0 {
+            let text = format_args!("expected handover_secs of at least 0, found {}", self.handover_secs);
+            return Err(fail(PsStatus::BadNumber, text));
+        }
+        Ok(ControllerConfig {
+            arithmetic,
+            cache_blends: self.cache_blends != 0,
+            auto_recover: self.auto_recover != 0,
+            assist_rise: self.assist_rise != 0,
+            start: NodeId::new(index("node", self.start_node, pack.graph().nodes().len())?),
+            blend_mode: blend_mode(self.blend_mode)?,
+            handover_secs: self.handover_secs,
+            turn_assist: (self.turn_assist != 0).then_some(turn),
+        })
+    }
+}
+
+/// A blend mode from outside.
+pub(crate) fn blend_mode(mode: i32) -> Result<BlendMode, PsStatus> {
+    let modes = [BlendMode::Parameters, BlendMode::Actions, BlendMode::Switch];
+    Ok(modes[index("blend mode", mode, modes.len())?])
+}
+
+/// Writes the usual choices.
+#[unsafe(no_mangle)]
+pub extern "C" fn ps_config_default(config: Option<&mut MaybeUninit<PsConfig>>) -> PsStatus {
+    guard(|| {
+        present("the place of a config", config)?.write(PsConfig::default());
+        Ok(())
+    })
+}

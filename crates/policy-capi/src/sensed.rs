@@ -1,0 +1,106 @@
+//! What the physics tells of a character, from the caller's arrays.
+
+use policy_core::glam::{Quat, Vec3};
+use policy_core::{BodyState, CharacterState, Skeleton};
+
+use crate::border::input;
+use crate::error::{PsStatus, fail};
+
+/// How far from 1 the length of a quaternion may be.
+const LENGTH_TOLERANCE: f32 = 0.01;
+
+/// Motion of one body: of its frame as in the MJCF, not of its centre of mass. World space, all at one moment.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct PsBody {
+    /// Origin of the frame, metres.
+    pub position: [f32; 3],
+    /// Turns body space to world space: x, y, z, w, of length 1. MuJoCo has w first.
+    pub rotation: [f32; 4],
+    /// Velocity of the frame's origin, metres per second.
+    pub linear_velocity: [f32; 3],
+    /// Radians per second about the world's axes.
+    pub angular_velocity: [f32; 3],
+}
+
+/// What the physics tells of a character.
+#[repr(C)]
+#[derive(Clone, Copy, Debug)]
+pub struct PsSensed {
+    /// One entry for each body of the pack, in its order.
+    pub bodies: *const PsBody,
+    /// Entries of `bodies`: exactly PsPackInfo.body_count.
+    pub body_count: usize,
+    /// Angular velocity of each hinge of the pack, in its order, radians per second.
+    pub joint_velocities: *const f32,
+    /// Entries of `joint_velocities`: exactly PsPackInfo.joint_count.
+    pub joint_count: usize,
+    /// Height of the ground below the root, metres.
+    pub ground_height: f32,
+}
+
+impl PsSensed {
+    /// Copies the arrays into a state of the skeleton. Does not allocate.
+    ///
+    /// # Safety
+    /// Both pointers are as the contract of every function says.
+    pub(crate) unsafe fn copy_into(
+        &self,
+        skeleton: &Skeleton,
+        out: &mut CharacterState,
+    ) -> Result<(), PsStatus> {
+        // SAFETY: the caller's promise is passed on.
+        let bodies = unsafe { input("bodies", self.bodies, self.body_count, skeleton.body_count()) }?;
+        let joints = skeleton.joint_count();
+        // SAFETY: the caller's promise is passed on.
+        let velocities =
+            unsafe { input("joint velocities", self.joint_velocities, self.joint_count, joints) }?;
+        for (to, from) in out.bodies.iter_mut().zip(bodies) {
+            *to = BodyState {
+                position: Vec3::from_array(from.position),
+                rotation: Quat::from_array(from.rotation),
+                linear_velocity: Vec3::from_array(from.linear_velocity),
+                angular_velocity: Vec3::from_array(from.angular_velocity),
+            };
+        }
+        out.joint_velocities.copy_from_slice(velocities);
+        out.ground_height = self.ground_height;
+        Ok(())
+    }
+}
+
+/// Refuses numbers that no character has, and names the body or joint.
+pub(crate) fn check(skeleton: &Skeleton, state: &CharacterState) -> Result<(), PsStatus> {
+    if !state.ground_height.is_finite() {
+        let found = state.ground_height;
+        let text = format_args!("expected a finite ground_height, found {found}");
+        return Err(fail(PsStatus::BadNumber, text));
+    }
+    for (body, entry) in state.bodies.iter().zip(skeleton.bodies()) {
+        let name = &entry.name;
+        let vectors = [
+            ("position", body.position),
+            ("linear_velocity", body.linear_velocity),
+            ("angular_velocity", body.angular_velocity),
+        ];
+        if let Some((field, found)) = vectors.iter().find(|(_, v)| !v.is_finite()) {
+            let text = format_args!("expected a finite {field} of body {name:?}, found {found}");
+            return Err(fail(PsStatus::BadNumber, text));
+        }
+        let length = body.rotation.length();
+        // False for NaN too.
+        let unit = (length - 1.0).abs() <= LENGTH_TOLERANCE;
+        if !unit {
+            let text =
+                format_args!("expected a rotation of length 1 of body {name:?}, found length {length}");
+            return Err(fail(PsStatus::BadNumber, text));
+        }
+    }
+    let mut velocities = state.joint_velocities.iter().zip(skeleton.joints());
+    if let Some((found, joint)) = velocities.find(|(v, _)| !v.is_finite()) {
+        let name = &joint.name;
+        let text = format_args!("expected a finite joint velocity of {name:?}, found {found}");
+        return Err(fail(PsStatus::BadNumber, text));
+    }
+    Ok(())
+}
