@@ -70,8 +70,7 @@ pub(crate) fn run(
         return show(&player, arguments.plots.as_deref());
     }
     let path = arguments.pack.as_ref().context("expected a pack")?;
-    let bytes = std::fs::read(path).with_context(|| format!("cannot read {}", path.display()))?;
-    let pack = CharacterPack::from_bytes(&bytes).with_context(|| path.display().to_string())?;
+    let pack = super::load::pack(path)?;
     let effort = if arguments.quick { Effort::QUICK } else { Effort::FULL };
     let sections: &[Section] = if arguments.only.is_empty() { &Section::ALL } else { &arguments.only };
     let states = match clips {

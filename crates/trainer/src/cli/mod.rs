@@ -7,6 +7,7 @@ pub(crate) mod export;
 pub(crate) mod import;
 pub(crate) mod interrupt;
 pub(crate) mod keep;
+pub(crate) mod load;
 pub(crate) mod normaliser;
 pub(crate) mod output;
 pub(crate) mod pack;

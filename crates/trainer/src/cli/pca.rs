@@ -29,8 +29,7 @@ pub(crate) struct Arguments {
 /// Computes and writes.
 pub(crate) fn run(model: &Model, arguments: &Arguments) -> Result<()> {
     let path = &arguments.pack;
-    let bytes = std::fs::read(path).with_context(|| format!("cannot read {}", path.display()))?;
-    let pack = Arc::new(CharacterPack::from_bytes(&bytes).with_context(|| path.display().to_string())?);
+    let pack = Arc::new(super::load::pack(path)?);
     std::fs::create_dir_all(&arguments.out)?;
     let maps = Maps::of(model, &pack, arguments.secs)
         .with_context(|| format!("{}: expected a path, found none", path.display()))?;

@@ -34,8 +34,7 @@ pub(crate) struct Arguments {
 
 /// Draws.
 pub(crate) fn run(model: &Model, recipes: &Path, clips: &ClipFolder, a: &Arguments) -> Result<()> {
-    let bytes = std::fs::read(&a.pack).with_context(|| format!("cannot read {}", a.pack.display()))?;
-    let pack = Arc::new(CharacterPack::from_bytes(&bytes).with_context(|| a.pack.display().to_string())?);
+    let pack = Arc::new(super::load::pack(&a.pack)?);
     std::fs::create_dir_all(&a.out).with_context(|| format!("cannot make {}", a.out.display()))?;
     let span = a.figures.max(1) * a.stride.max(1);
     for (index, node) in pack.graph().nodes().iter().enumerate().filter(|(_, n)| n.speed_mps.is_some()) {
