@@ -241,10 +241,12 @@ fn onnx(path: &Path) -> Result<(), String> {
     trainer::onnx::read_policy("walk", &bytes).map(drop).map_err(told)
 }
 
-/// The file that names the models.
+/// The file that names the models, beside sound ones.
 fn deployment(path: &Path) -> Result<(), String> {
-    let folder = path.parent().unwrap_or(Path::new("."));
-    let name = folder.join("onnx").join(trainer::onnx::DEPLOYMENT_FILE);
-    beside(&name, path)?;
-    trainer::onnx::import(&reference_pack(), &folder.join("onnx")).map(drop).map_err(told)
+    let folder = path.parent().unwrap_or(Path::new(".")).join("onnx");
+    if !folder.is_dir() {
+        trainer::onnx::export(&reference_pack(), &folder).map_err(told)?;
+    }
+    beside(&folder.join(trainer::onnx::DEPLOYMENT_FILE), path)?;
+    trainer::onnx::import(&reference_pack(), &folder).map(drop).map_err(told)
 }
