@@ -48,6 +48,8 @@ pub const ALL: &[(&str, Read)] = &[
     ("checkpoint", checkpoint),
     ("normalisers", normalisers),
     ("clip", clip),
+    ("onnx", onnx),
+    ("deployment", deployment),
 ];
 
 /// The body of the humanoid, compiled once.
@@ -231,4 +233,20 @@ fn normalisers(path: &Path) -> Result<(), String> {
 
 fn clip(path: &Path) -> Result<(), String> {
     clips::load_file(path).map(drop).map_err(told)
+}
+
+/// The model of a policy, on its way back into a pack.
+fn onnx(path: &Path) -> Result<(), String> {
+    let bytes = viewer::files::read(path, 16 << 20).map_err(told)?;
+    trainer::onnx::read_policy("walk", &bytes).map(drop).map_err(told)
+}
+
+/// The file that names the models, beside sound ones.
+fn deployment(path: &Path) -> Result<(), String> {
+    let folder = path.parent().unwrap_or(Path::new(".")).join("onnx");
+    if !folder.is_dir() {
+        trainer::onnx::export(&reference_pack(), &folder).map_err(told)?;
+    }
+    beside(&folder.join(trainer::onnx::DEPLOYMENT_FILE), path)?;
+    trainer::onnx::import(&reference_pack(), &folder).map(drop).map_err(told)
 }

@@ -7,7 +7,7 @@ use gamepad::recording::{PadEvent, RecordedPad, Recorder};
 use gamepad::{Bus, PadId};
 use integration_tests::{DT_SECS, HUMANOID_MJCF, QUADRUPED_MJCF, made_up, reference_pack};
 use physics_bridge::{Character, Model};
-use policy_core::{CharacterState, Command, Controller, ControllerState};
+use policy_core::{CharacterState, Command, Controller, ControllerState, PolicyId};
 use viewer::app::PanelLayout;
 
 /// Report descriptor of a pad with four axes and twelve buttons.
@@ -74,6 +74,9 @@ fn write_made(folder: &Path) {
         &without_checksum(&made_up::pack(&quadruped, QUADRUPED_MJCF).to_bytes()),
     );
     make("state", "walking.state", &state());
+    let pack = reference_pack();
+    make("onnx", "policy.onnx", &trainer::onnx::policy_model(&pack, PolicyId::new(1)));
+    make("deployment", "deployment.json", trainer::onnx::Deployment::of(&pack).to_json().as_bytes());
     let character = Character::new(&Model::from_mjcf(HUMANOID_MJCF).expect("the humanoid compiles"));
     make("replay_file", "standing.json", &character.replay_file().to_bytes());
     let qpos = character.pose().qpos;

@@ -3,7 +3,7 @@
 use std::path::Path;
 use std::process::Command;
 
-use anyhow::Result;
+use anyhow::{Result, bail};
 
 use super::{Step, Verdict, c_interface, deny, imports, words};
 use crate::workspace::{Workspace, answers, output_of, run};
@@ -39,17 +39,13 @@ pub const ALL: &[Step] = &[
 ];
 
 fn formatting(workspace: &Workspace) -> Result<Verdict> {
-    if !has_component(workspace, "fmt", "rustfmt") {
-        return Ok(missing_component("rustfmt"));
-    }
+    require_component(workspace, "fmt", "rustfmt")?;
     run(workspace.cargo().args(["fmt", "--all", "--check"]))?;
     Ok(Verdict::Passed)
 }
 
 fn clippy(workspace: &Workspace) -> Result<Verdict> {
-    if !has_component(workspace, "clippy", "clippy") {
-        return Ok(missing_component("clippy"));
-    }
+    require_component(workspace, "clippy", "clippy")?;
     run(workspace.cargo().args(["clippy", "--workspace", "--all-targets", "--", "-D", "warnings"]))?;
     Ok(Verdict::Passed)
 }
@@ -67,7 +63,7 @@ fn tests(workspace: &Workspace) -> Result<Verdict> {
 /// Builds policy-core without the standard library for a target that has none.
 fn no_std(workspace: &Workspace, target: &str) -> Result<Verdict> {
     if !has_target(workspace, target) && !run_rustup(&["target", "add", target]) {
-        return Ok(Verdict::Skipped(format!("target {target} is not installed and rustup could not add it")));
+        bail!("expected the target {target}, found none, and rustup could not add it");
     }
     let arguments = ["build", "-p", "policy-core", "--no-default-features", "--target", target];
     run(workspace.cargo().args(arguments))?;
@@ -87,14 +83,13 @@ fn has_target(workspace: &Workspace, target: &str) -> bool {
     folder.is_ok_and(|folder| Path::new(folder.trim()).is_dir())
 }
 
-/// Whether a cargo subcommand of the toolchain is there, after adding its component if it was not.
-fn has_component(workspace: &Workspace, subcommand: &str, component: &str) -> bool {
+/// Adds the component of a cargo subcommand to the toolchain when it is missing. A check that cannot run has failed.
+fn require_component(workspace: &Workspace, subcommand: &str, component: &str) -> Result<()> {
     let there = || answers(workspace.cargo().args([subcommand, "--version"]));
-    there() || (run_rustup(&["component", "add", component]) && there())
-}
-
-fn missing_component(component: &str) -> Verdict {
-    Verdict::Skipped(format!("{component} is not installed and rustup could not add it"))
+    if there() || (run_rustup(&["component", "add", component]) && there()) {
+        return Ok(());
+    }
+    bail!("expected {component}, found none, and rustup could not add it")
 }
 
 fn run_rustup(arguments: &[&str]) -> bool {

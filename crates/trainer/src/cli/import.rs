@@ -7,7 +7,7 @@ use clap::Args;
 use files::write_atomically;
 use trainer::onnx::import;
 
-use super::export::load;
+use super::load;
 use super::output::say;
 
 /// Arguments of the verb.
@@ -25,7 +25,7 @@ pub(crate) struct Arguments {
 
 /// Imports.
 pub(crate) fn run(arguments: &Arguments) -> Result<()> {
-    let pack = load(&arguments.pack)?;
+    let pack = load::pack(&arguments.pack)?;
     let imported = import(&pack, &arguments.onnx)?;
     let out = arguments.out.as_ref().unwrap_or(&arguments.pack);
     write_atomically(out, &imported.to_bytes()).with_context(|| format!("cannot write {}", out.display()))?;

@@ -9,7 +9,6 @@ use clap::Args;
 use evaluation::maps::Maps;
 use files::write_atomically;
 use physics_bridge::Model;
-use policy_core::CharacterPack;
 
 use super::output::say;
 
