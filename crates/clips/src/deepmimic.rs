@@ -74,6 +74,7 @@ fn rotations(bodies: &[String], frame: &[f32; FRAME]) -> Vec<Quat> {
         Quat::from_xyzw(v.x, v.y, v.z, frame[at])
     };
     let mut rotations = vec![Quat::IDENTITY; bodies.len()];
+    // The tables name bodies of the humanoid, whatever the file says.
     let index = |name: &str| bodies.iter().position(|body| body == name).expect("a body of the humanoid");
     rotations[0] = quat(4);
     for (body, at) in BALLS {

@@ -93,6 +93,16 @@ pub enum ClipError {
         /// Bodies of the clip.
         found: String,
     },
+    /// Two clips that are mixed have different bodies.
+    #[error("clip {clip}: expected the bodies {expected} in this order, found {found}")]
+    Bodies {
+        /// Name of the clip.
+        clip: String,
+        /// Bodies of the other clip.
+        expected: String,
+        /// Its bodies.
+        found: String,
+    },
     /// A quaternion is not of unit length.
     #[error("clip {clip}: expected unit quaternions, found another length in frame {frame}, body {body}")]
     Quaternion {

@@ -26,6 +26,7 @@ pub(super) fn put_on_ground(pose: &mut Pose, character: &mut Character) -> Resul
         }
         character.sense_into(&mut state);
         let ahead = state.body(foot).rotation * glam::Vec3::X;
+        // `set_pose` checked the length: 7 numbers for the root, one for each joint. Ranges ascend.
         let was = pose.qpos[7 + ankle];
         // A turn about +y tips the toes down.
         let level = was + f64::from(sign * ahead.z.clamp(-1.0, 1.0).asin());

@@ -52,6 +52,7 @@ pub fn fit(clip: &Clip, model: &Model) -> Result<Fitted, FitError> {
     motion.differentiate();
     let mut lowest = states(&motion, model)?.1;
     lowest.sort_by(f32::total_cmp);
+    // A motion has two poses or more, so a fifth of their number is an index.
     let lift = -lowest[lowest.len() / 5];
     motion.lift(f64::from(lift));
     let (states, clearances) = states(&motion, model)?;

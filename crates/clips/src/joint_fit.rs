@@ -88,6 +88,7 @@ impl JointFit {
         }
         for (joint, angle) in angles.iter_mut().enumerate() {
             self.worst[joint] = self.worst[joint].max(self.outside(joint, *angle));
+            // A skeleton's ranges are finite and ascend, which `clamp` needs; all lists have one entry a joint.
             let [low, high] = self.ranges[joint];
             *angle = angle.clamp(low, high);
         }

@@ -24,6 +24,7 @@ pub use motion::{MOTION_HZ, Motion, TICK_STRIDE, placed};
 
 use std::sync::Arc;
 
+use files::quoted;
 use glam::{Quat, Vec3};
 
 /// Longest clip that is read, in frames.
@@ -64,6 +65,7 @@ impl Clip {
                 return Err(ClipError::Lengths { clip: name(), field, expected: frames, found });
             }
         }
+        let start = self.times[0];
         for frame in 0..frames {
             // All lists have as many frames as there are times.
             let (expected, found) = (self.bodies.len(), self.local_rotations[frame].len());
@@ -82,7 +84,8 @@ impl Clip {
             if !finite {
                 return Err(ClipError::NotFinite { clip: name(), frame });
             }
-            if frame > 0 && self.times[frame] <= self.times[frame - 1] {
+            // Times that differ may become one when they are made to start at zero: rounding.
+            if frame > 0 && self.times[frame] - start <= self.times[frame - 1] - start {
                 return Err(ClipError::Times { clip: name(), frame });
             }
             let length_error = |q: &Quat| (q.length() - 1.0).abs() > 0.1;
@@ -90,7 +93,6 @@ impl Clip {
                 return Err(ClipError::Quaternion { clip: name(), frame, body });
             }
         }
-        let start = self.times[0];
         self.times.iter_mut().for_each(|t| *t -= start);
         for rotations in &mut self.local_rotations {
             rotations.iter_mut().for_each(|q| *q = q.normalize());
@@ -129,8 +131,18 @@ impl Clip {
 
     /// Every frame this much of the way, in [0, 1], to a pose of `other`, which has the same bodies: how it begins, half-way to its
     /// mirror image. The way of the root shrinks as much. A smaller and slower motion between this one and that pose.
-    #[must_use]
-    pub fn towards(&self, other: &Self, share: f32) -> Self {
+    ///
+    /// # Errors
+    /// When the bodies of `other` are not the same in the same order.
+    pub fn towards(&self, other: &Self, share: f32) -> Result<Self, ClipError> {
+        if self.bodies != other.bodies {
+            return Err(ClipError::Bodies {
+                clip: other.name.clone(),
+                expected: quoted(&self.bodies.join(", ")),
+                found: quoted(&other.bodies.join(", ")),
+            });
+        }
+        // Clips that were checked have frames, and a rotation of each body in every one; so below.
         let (first, mirrored) = (other.root_positions[0], &other.mirrored().local_rotations[0]);
         let pairs = other.local_rotations[0].iter().zip(mirrored);
         let rotations: Vec<Quat> = pairs.map(|(one, other)| one.slerp(*other, 0.5)).collect();
@@ -139,12 +151,12 @@ impl Clip {
         let turn = |frame: &Vec<Quat>| -> Vec<Quat> {
             frame.iter().zip(&rotations).map(|(from, to)| from.slerp(*to, share)).collect()
         };
-        Self {
+        Ok(Self {
             name: format!("{} towards {}", self.name, other.name),
             root_positions: self.root_positions.iter().map(root).collect(),
             local_rotations: self.local_rotations.iter().map(turn).collect(),
             ..self.clone()
-        }
+        })
     }
 
     /// The mirror image: y negated, and bodies with `left` in their names swapped with those with `right`.

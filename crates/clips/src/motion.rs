@@ -40,6 +40,7 @@ impl Motion {
         if intervals < 2 {
             return Err(ClipError::FrameCount { clip: clip.name.clone(), found: intervals });
         }
+        // A clip that was checked lasts at most 600 s and has a root in every frame; there are two poses or more.
         let dt = f64::from(clip.duration()) / intervals as f64;
         let count = if clip.looping { intervals } else { intervals + 1 };
         let mut fit = JointFit::new(skeleton, &clip.name, &clip.bodies)?;
@@ -52,6 +53,7 @@ impl Motion {
                 pose
             })
             .collect();
+        // A skeleton has a joint, and `worst` gives the index of one.
         let (worst, joint) = fit.worst();
         let offset = if clip.looping { clip.cycle_offset().as_dvec3() } else { DVec3::ZERO };
         let mut motion = Self {
@@ -83,6 +85,7 @@ impl Motion {
     /// Index of the pose `ticks` control ticks before pose `index`; stops at the start of a clip that doesn't loop.
     #[must_use]
     pub fn earlier(&self, index: usize, ticks: usize) -> usize {
+        // `fit` makes two poses or more, here and in `mean_speed`.
         let back = ticks * TICK_STRIDE;
         if self.looping {
             (index + self.poses.len() * (back / self.poses.len() + 1) - back) % self.poses.len()

@@ -108,6 +108,10 @@ fn times_must_ascend_and_stay_short() {
     let mut clip = still(3);
     clip.times[2] = 1e9;
     assert!(matches!(clip.checked(), Err(ClipError::Duration { .. })));
+    // The last two become one time when the first becomes zero.
+    let mut clip = still(3);
+    clip.times = vec![-100.0, 1e-9, 2e-9];
+    assert!(matches!(clip.checked(), Err(ClipError::Times { frame: 2, .. })));
     assert!(matches!(still(1).checked(), Err(ClipError::FrameCount { found: 1, .. })));
 }
 
@@ -174,14 +178,23 @@ fn a_missing_folder_or_clip_is_named() {
 #[test]
 fn half_way_to_a_stand_a_walk_bends_and_goes_half_as_much() {
     let (walk, stand) = (swinging(), still(2));
-    let half = walk.towards(&stand, 0.5);
+    let half = walk.towards(&stand, 0.5).unwrap();
     assert!((half.cycle_offset().x - 0.5).abs() < 1e-6 && half.duration() == walk.duration());
     let knee = body("right_shin");
     let bend = |clip: &Clip| clip.local_rotations[60][knee].angle_between(Quat::IDENTITY);
-    assert!((bend(&walk.towards(&stand, 0.0)) - bend(&walk)).abs() < 1e-3);
+    assert!((bend(&walk.towards(&stand, 0.0).unwrap()) - bend(&walk)).abs() < 1e-3);
     assert!(bend(&walk) > 0.5 && (bend(&half) - 0.5 * bend(&walk)).abs() < 1e-3);
     // What it goes towards is the same on both sides, whatever side that clip begins on.
-    let whole = walk.towards(&walk.mirrored(), 1.0);
+    let whole = walk.towards(&walk.mirrored(), 1.0).unwrap();
     let [left, right] = ["left_shin", "right_shin"].map(|name| whole.local_rotations[0][body(name)]);
     assert!(left.angle_between(right) < 1e-3);
+}
+
+#[test]
+fn a_clip_goes_to_no_pose_of_other_bodies() {
+    let mut other = still(2);
+    other.bodies = vec!["root".to_owned()].into();
+    other.local_rotations = vec![vec![Quat::IDENTITY]; 2];
+    let error = swinging().towards(&other.checked().unwrap(), 0.5).unwrap_err().to_string();
+    assert!(error.contains("right_shin") && error.ends_with("found root"), "{error}");
 }

@@ -67,6 +67,7 @@ impl Field {
     /// The value in `report` (without its id); `None` when the report is too short.
     #[must_use]
     pub fn value(&self, report: &[u8]) -> Option<i32> {
+        // A descriptor's fields end by MAX_REPORT_BITS and have 1 to 32 bits, which touch at most 5 bytes.
         let end = (self.bit_offset + self.bits).div_ceil(8) as usize;
         let bytes = report.get(self.bit_offset as usize / 8..end)?;
         let mut window = [0; 8];

@@ -87,6 +87,7 @@ struct Group<'a> {
 
 impl Group<'_> {
     fn evaluate(&self, inputs: &[f32], scratch: &mut BatchScratch, out: &mut [f32]) {
+        // There are policies, lengths and shapes agree: the caller asserts it. A group has at most GROUP blocks.
         let shape = &self.policies[0];
         self.load_inputs(inputs, shape.inputs(), scratch);
         for layer in 0..shape.layers().len() {

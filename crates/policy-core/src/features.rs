@@ -26,6 +26,7 @@ pub const HISTORY_LEN: usize = FRAME_AGES[FRAME_AGES.len() - 1] + 1;
 pub fn discriminator_frame_into(skeleton: &Skeleton, state: &CharacterState, out: &mut [f32]) {
     assert!(state.fits(skeleton), "a state of the skeleton");
     assert_eq!(out.len(), skeleton.frame_len(), "numbers of a frame");
+    // The state fits, ids of a skeleton are checked when it is made, and `frame_len` counts what is pushed.
     let root = state.root();
     let heading = Heading::from_rotation(root.rotation);
     let mut cursor = Cursor { out, at: 0 };
@@ -93,6 +94,7 @@ impl FrameHistory {
 
     /// The slot of a new frame, for the caller to write; the oldest frame is lost.
     pub fn push(&mut self) -> &mut [f32] {
+        // `newest` stays below the number of frames in the ring, here and in `input_into`.
         self.newest = (self.newest + 1) % HISTORY_LEN;
         self.seen = (self.seen + 1).min(HISTORY_LEN);
         &mut self.frames[self.newest * self.frame_len..][..self.frame_len]
@@ -107,7 +109,7 @@ impl FrameHistory {
     /// Writes the discriminator's input, newest frame first, or returns false while the history is not full.
     ///
     /// # Panics
-    /// When `out` has not room for one frame of each of [`FRAME_AGES`] exactly.
+    /// When `out` has not room for one frame of each of [`FRAME_AGES`] exactly, or frames have no numbers.
     pub fn input_into(&self, out: &mut [f32]) -> bool {
         assert_eq!(out.len(), self.frame_len * FRAME_AGES.len(), "inputs of a discriminator");
         if !self.is_full() {

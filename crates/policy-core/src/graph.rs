@@ -86,8 +86,11 @@ pub enum GraphError {
         /// What it is.
         found: f32,
     },
-    /// An edge joins a node to itself, to a node that is not there, or takes no finite time above 0.
-    #[error("expected edge {edge} to join two different policies in a finite time above 0, found {found:?}")]
+    /// An edge joins a node to itself, to a node that is not there, takes no finite time above 0, or is infinitely long.
+    #[error(
+        "expected edge {edge} to join two different policies at a finite distance in a finite time above 0, found \
+         {found:?}"
+    )]
     Edge {
         /// Index of the edge.
         edge: usize,
@@ -141,6 +144,10 @@ impl PolicyGraph {
             }
             // `joins` says that both are nodes, and there is a policy for each node.
             edge.distance = libm::sqrt(policies[a].squared_distance(&policies[b])) as f32;
+            // Parameters near the greatest number are finite, but their difference may not be.
+            if !edge.distance.is_finite() {
+                return Err(GraphError::Edge { edge: index, found: edge });
+            }
             checked.push(edge);
         }
         let routes = RouteTable::new(nodes.len(), &checked);
@@ -160,6 +167,7 @@ impl PolicyGraph {
         if path.nodes.len() < 2 {
             return bad(path.nodes.first().copied().unwrap_or_default(), None);
         }
+        // `windows` gives pairs. A path along edges names nodes of the graph only.
         match path.nodes.windows(2).find(|pair| self.edge_between(pair[0], pair[1]).is_none()) {
             Some(pair) => bad(pair[0], Some(pair[1])),
             None => Ok(()),

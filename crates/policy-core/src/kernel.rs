@@ -83,6 +83,7 @@ fn for_each_panel<const FUSED: bool>(
     bias: &[Row],
     mut write: impl FnMut(usize, &[f32; TILE]),
 ) {
+    // `Layer` is made with a weight row for each input and panel; `Mlp` passes as many inputs, and room for all panels.
     let rows = x.len();
     let mut at = 0;
     while at + 2 <= bias.len() {

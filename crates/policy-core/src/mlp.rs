@@ -133,6 +133,7 @@ impl Layer {
     /// Weights, input-major, as [`Layer::from_input_major`] takes them.
     pub fn weight(&self) -> impl Iterator<Item = f32> + '_ {
         (0..self.inputs).flat_map(move |input| {
+            // As in `from_input_major`: a panel has a row for every input.
             (0..self.outputs)
                 .map(move |output| self.weight[output / TILE * self.inputs + input].0[output % TILE])
         })
@@ -202,6 +203,7 @@ impl Mlp {
     /// Numbers it takes.
     #[must_use]
     pub fn inputs(&self) -> usize {
+        // `from_layers` refuses a network without layers, here and below.
         self.layers[0].inputs
     }
 
@@ -261,6 +263,7 @@ impl Mlp {
         self.assert_lengths(input, out);
         let MlpScratch { front, back, .. } = scratch;
         let mut x = input;
+        // Layers form a chain, so `x` fits each; `padded_outputs` is a whole number of panels.
         for (i, layer) in self.layers.iter().enumerate() {
             let y = &mut front[..layer.padded_outputs()];
             arithmetic.layer(x, &layer.weight, &layer.bias, y.as_chunks_mut().0);

@@ -39,6 +39,7 @@ pub fn observe_into(skeleton: &Skeleton, state: &CharacterState, out: &mut [f32]
     let heading = Heading::from_rotation(root.rotation);
     let mut cursor = Cursor { out, at: 0 };
     cursor.push(state.root_height());
+    // A skeleton has a body, the state fits it, and `observation_len` counts what is pushed.
     for body in &state.bodies[1..] {
         cursor.push3(heading.heading_from_world(body.position - root.position));
     }

@@ -29,6 +29,7 @@ impl Path {
     /// The greatest coordinate on the path.
     #[must_use]
     pub fn end(&self) -> f32 {
+        // The graph refuses paths of fewer than two nodes, here and below.
         (self.nodes.len() - 1) as f32
     }
 

@@ -22,6 +22,7 @@ impl RouteTable {
     /// Floyd and Warshall's search over at most 64 nodes. An edge costs a hair even where its ends
     /// coincide, so that ways stay short.
     pub(crate) fn new(nodes: usize, edges: &[Edge]) -> Self {
+        // Every index below is `row * nodes + column`; the graph checked that edges join its nodes.
         let mut cost = alloc::vec![f32::INFINITY; nodes * nodes];
         let mut next: Vec<usize> = (0..nodes * nodes).map(|i| i % nodes).collect();
         for i in 0..nodes {
@@ -80,6 +81,7 @@ impl RouteTable {
         }
         let mut nodes = alloc::vec![from];
         let mut at = from;
+        // This ends: no step costs more than the one before, and the search takes a detour only where it is cheaper.
         while let Some(next) = self.next(at, to) {
             nodes.push(next);
             at = next;
@@ -91,6 +93,9 @@ impl RouteTable {
 impl PolicyGraph {
     /// Moves a position on the graph for `dt_secs` towards `goal`, along the cheapest way. Each edge is crossed at the
     /// rate of [`Edge::seconds`] or [`Edge::seconds_back`]. Stays where there is no way. Does not allocate.
+    ///
+    /// # Panics
+    /// When a node of a position is not in the graph.
     pub fn travel(&self, position: &mut GraphPosition, goal: GraphPosition, dt_secs: f32) {
         let mut left = if dt_secs > 0.0 { dt_secs } else { 0.0 };
         // Every round but the last ends at a node nearer to the goal.

@@ -41,6 +41,7 @@ impl Scorer {
             return None;
         }
         let mut logit = [0.0];
+        // The pack took the id from its own list and checked inputs and the one output of every discriminator.
         let network = &pack.tensors().discriminators[discriminator.index()];
         network.evaluate_into(Arithmetic::Reproducible, &self.input, self.scratch.as_mut()?, &mut logit);
         Some(1.0 / (1.0 + libm::expf(-logit[0])))

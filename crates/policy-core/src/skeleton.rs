@@ -293,7 +293,9 @@ fn check_joint(joint: &SkeletonJoint, bodies: usize) -> Result<(), SkeletonError
         return Err(SkeletonError::Body { owner, found: joint.body.index() });
     }
     let [low, high] = joint.range;
-    let turns = joint.axis.is_finite() && joint.axis.length_squared() > 1e-12;
+    // An axis of finite numbers may still be too long to be normalised.
+    let length_squared = joint.axis.length_squared();
+    let turns = length_squared > 1e-12 && length_squared.is_finite();
     if !turns || !low.is_finite() || !high.is_finite() || low >= high {
         return Err(SkeletonError::Joint { joint: joint.name.clone(), axis: joint.axis, range: joint.range });
     }

@@ -54,6 +54,7 @@ fn bad_skeletons_are_refused() {
     assert!(matches!(refused(|b, _, _| b[0].parent = Some(BodyId::new(0))), SkeletonError::Parent { .. }));
     assert!(matches!(refused(|_, j, _| j[0].body = BodyId::new(2)), SkeletonError::Body { found: 2, .. }));
     assert!(matches!(refused(|_, j, _| j[0].axis = Vec3::ZERO), SkeletonError::Joint { .. }));
+    assert!(matches!(refused(|_, j, _| j[0].axis = Vec3::splat(1e30)), SkeletonError::Joint { .. }));
     assert!(matches!(refused(|_, j, _| j[0].range = [1.0, 1.0]), SkeletonError::Joint { .. }));
     assert!(matches!(refused(|_, j, _| j[0].range[0] = f32::NAN), SkeletonError::Joint { .. }));
     assert!(matches!(refused(|_, _, r| r.feet.push(BodyId::new(9))), SkeletonError::Body { found: 9, .. }));

@@ -4,7 +4,8 @@ mod common;
 
 use common::{n, pack};
 use policy_core::format::EdgeEntry;
-use policy_core::{CharacterPack, GraphPosition, NodeId, PolicyGraph};
+use policy_core::training::Layer;
+use policy_core::{CharacterPack, GraphPosition, Mlp, NodeId, PolicyGraph};
 use proptest::prelude::*;
 
 const DT: f32 = 1.0 / 30.0;
@@ -58,6 +59,21 @@ fn search_finds_the_cheapest_way() {
         }
     }
     assert!(graph.routes().route(n(0), node(&pack, "roll")).is_empty(), "roll hangs on no edge");
+}
+
+#[test]
+fn policies_that_are_infinitely_far_apart_make_no_edge() {
+    let mut tensors = common::tensors(0.0);
+    let far = |end: f32| {
+        let layers = common::POLICY_SIZES
+            .windows(2)
+            .map(|w| Layer::from_input_major(w[0], w[1], &vec![end; w[0] * w[1]], &vec![end; w[1]]).unwrap());
+        Mlp::from_layers(layers.collect()).unwrap()
+    };
+    // Idle and walk, which an edge joins.
+    (tensors.policies[0], tensors.policies[1]) = (far(3e38), far(-3e38));
+    let error = CharacterPack::from_parts(common::manifest(), tensors).unwrap_err().to_string();
+    assert!(error.contains("finite distance"), "{error}");
 }
 
 #[test]

@@ -39,6 +39,7 @@ impl<'a> Items<'a> {
     }
 
     fn take(&mut self, start: usize, len: usize) -> Result<&'a [u8], DescriptorError> {
+        // `offset` never passes the end, and a descriptor is at most 4096 bytes long.
         let left = self.bytes.len() - self.offset;
         let Some(data) = self.bytes.get(self.offset..self.offset + len) else {
             self.offset = self.bytes.len();
@@ -59,6 +60,7 @@ impl Iterator for Items<'_> {
             let first = *self.bytes.get(offset)?;
             self.offset += 1;
             if first == LONG {
+                // `take` gives as many bytes as asked for, here and below.
                 let passed = self.take(offset, 2).map(|head| usize::from(head[0]));
                 if let Err(error) = passed.and_then(|len| self.take(offset, len)) {
                     return Some(Err(error));

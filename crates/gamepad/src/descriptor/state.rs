@@ -29,6 +29,7 @@ impl Locals {
     /// The usage of the `index`-th value; the last usage applies to all further values.
     fn usage(&self, mut index: u32) -> Usage {
         for &(first, last) in &self.usages {
+            // `apply_usage` keeps ranges that ascend on one page; `index` stays inside this one.
             let count = u32::from(last.number() - first.number()) + 1;
             if index < count {
                 return Usage(first.0 + index);
@@ -139,9 +140,11 @@ impl State {
         if min > max {
             return Err(DescriptorError::Range { offset, min, max });
         }
+        // `advance` bounded width times count, and neither is 0: the sums below stay small.
         if self.fields.len() + globals.report_count as usize > MAX_FIELDS {
             return Err(DescriptorError::TooManyFields { offset });
         }
+        // Usages are not empty, checked above.
         let is_array = flags & VARIABLE == 0;
         for index in 0..globals.report_count {
             let usage = self.locals.usage(if is_array { 0 } else { index });
@@ -167,6 +170,7 @@ impl State {
             self.report_bits.push((id, 0));
             self.report_bits.len() - 1
         });
+        // `index` was found or just pushed.
         let used = &mut self.report_bits[index].1;
         let start = *used;
         *used = u32::try_from(u64::from(start) + bits).ok().filter(|&end| end <= MAX_REPORT_BITS)?;

@@ -77,6 +77,7 @@ impl GenericPad {
     /// [`ReportError`] for reports shorter than the descriptor says and unknown ids; `input` is unchanged.
     pub fn parse_into(&self, report: &[u8], input: &mut PadInput) -> Result<Update, ReportError> {
         let first = *report.first().ok_or(ReportError::Empty)?;
+        // There is a first byte, so `1..` is inside.
         let (id, data) = if self.has_report_ids { (first, &report[1..]) } else { (0, report) };
         let Some(&(_, bits)) = self.report_bits.iter().find(|known| known.0 == id) else {
             return Err(ReportError::UnknownReport { report_id: first });
@@ -158,6 +159,7 @@ fn hat_direction(field: &Field, value: i32) -> u8 {
         return RELEASED;
     }
     let step = i64::from(value) - i64::from(field.logical_min);
+    // `step` is at least 0 and at most the range, so both casts keep it.
     match i64::from(field.logical_max) - i64::from(field.logical_min) {
         3 => 2 * step as u8,
         7.. if step < 8 => step as u8,

@@ -23,6 +23,7 @@ pub(super) fn encode_state(state: &GamepadState) -> [u8; STATE_LEN] {
 /// `None` for a wrong length and for values outside their ranges.
 pub(super) fn decode_state(bytes: &[u8]) -> Option<GamepadState> {
     let bytes: &[u8; STATE_LEN] = bytes.try_into().ok()?;
+    // Axes 0 to 5 take the first 24 bytes, the buttons the last 4.
     let axis =
         |i: usize| f32::from_le_bytes([bytes[4 * i], bytes[4 * i + 1], bytes[4 * i + 2], bytes[4 * i + 3]]);
     let bits = u32::from_le_bytes([bytes[24], bytes[25], bytes[26], bytes[27]]);
@@ -58,6 +59,7 @@ pub(super) fn encode_calibration(calibration: &Calibration) -> [u8; CALIBRATION_
 /// `None` for a wrong length, rest positions beyond [-0.5, 0.5], and invalid thresholds.
 pub(super) fn decode_calibration(bytes: &[u8]) -> Option<Calibration> {
     let bytes: &[u8; CALIBRATION_LEN] = bytes.try_into().ok()?;
+    // 14 values of 4 bytes; the last zone takes values 12 and 13.
     let value =
         |i: usize| f32::from_le_bytes([bytes[4 * i], bytes[4 * i + 1], bytes[4 * i + 2], bytes[4 * i + 3]]);
     let zone = |i: usize| Zone::new(value(6 + 2 * i), value(7 + 2 * i)).ok();

@@ -164,6 +164,7 @@ impl Deployment {
             name: path.name().to_owned(),
             file: file_name("path", index, path.name()),
             blend_input: BLEND.to_owned(),
+            // A pack without policies is refused.
             layers: pack.policies()[0].layers().len(),
             nodes: path.nodes().iter().map(name).collect(),
             seconds: path.nodes().windows(2).map(|pair| seconds(graph, pair[0], pair[1])).collect(),
@@ -192,6 +193,7 @@ impl Deployment {
     /// As JSON. Equal deployments give equal bytes.
     #[must_use]
     pub fn to_json(&self) -> String {
+        // JSON writes numbers that are not finite as null, and no map here has odd keys.
         let json = serde_json::to_string_pretty(self).expect("strings and finite numbers are JSON");
         json + "\n"
     }
@@ -224,6 +226,7 @@ impl Conventions {
 
 impl ObservationLayout {
     fn of_bodies(count: usize) -> Self {
+        // A skeleton has a body at least.
         let described = [
             ("root_height", 1, "height of the root above the ground, m".to_owned()),
             ("positions", 3 * count - 3, "of the bodies but the root, relative to the root, m".to_owned()),
@@ -252,12 +255,14 @@ impl ObservationLayout {
 
 /// Time from a node to its neighbour and back.
 fn seconds(graph: &PolicyGraph, a: NodeId, b: NodeId) -> [f32; 2] {
+    // The graph checked it when the pack was made.
     let edge = graph.edge_between(a, b).expect("a path runs along edges");
     [edge.seconds_from(a), edge.seconds_from(b)]
 }
 
 fn joints(pack: &CharacterPack) -> Vec<DeployedJoint> {
     let skeleton = pack.skeleton();
+    // A pack has an action scaling and, where it has motors, one for each joint.
     let joints = skeleton.joints().iter().enumerate().map(|(index, joint)| DeployedJoint {
         name: joint.name.clone(),
         body: skeleton.body(joint.body).name.clone(),

@@ -68,6 +68,7 @@ pub fn policy_model(pack: &CharacterPack, policy: PolicyId) -> Vec<u8> {
 pub fn path_model(pack: &CharacterPack, path: PathId) -> Vec<u8> {
     let path = &pack.graph().paths()[path.index()];
     let policies: Vec<&Mlp> = path.nodes().iter().map(|node| &pack.policies()[node.index()]).collect();
+    // A path has two nodes or more, and all policies of a pack have the same layers.
     let (first, count) = (policies[0], policies.len());
     let layers = first.layers().len();
     let mut graph = GraphBuilder::new("path", first.inputs());

@@ -78,6 +78,7 @@ impl GraphBuilder {
     pub(super) fn attribute(&mut self, name: &str, i: i64) {
         let attribute =
             AttributeProto { name: name.to_owned(), i: Some(i), r#type: ATTRIBUTE_INT, ..Default::default() };
+        // Called right after `node`, by the exporter only.
         self.graph.node.last_mut().expect("an operator was added before").attribute.push(attribute);
     }
 

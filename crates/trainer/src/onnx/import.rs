@@ -121,7 +121,7 @@ impl<'a> Chain<'a> {
         let at = &self.at;
         let mut takers = self.graph.node.iter().filter(|node| node.input.first() == Some(at));
         let (taker, other) = (takers.next(), takers.next());
-        let expected = || format!("one {op_type} with {inputs} inputs after {at:?}");
+        let expected = || format!("one {op_type} with {inputs} inputs after {:?}", quoted(at));
         let node = match (taker, other) {
             (Some(node), None) => node,
             (None, _) => return Err(self.wrong(expected(), "none")),
@@ -131,6 +131,7 @@ impl<'a> Chain<'a> {
             let found = format!("{} with {} inputs", node.op_type, node.input.len());
             return Err(self.wrong(expected(), found));
         }
+        // There is one output, and callers index no more inputs than they asked for.
         self.at.clone_from(&node.output[0]);
         self.used += 1;
         Ok(node)
@@ -140,7 +141,8 @@ impl<'a> Chain<'a> {
     fn constant(&self, name: &str) -> Result<(&'a [i64], Vec<f32>), OnnxError> {
         let tensor = self.graph.initializer.iter().find(|tensor| tensor.name == name);
         let numbers = tensor.and_then(|tensor| Some((tensor.dims.as_slice(), tensor.floats()?)));
-        numbers.ok_or_else(|| self.wrong(format!("a constant of 32-bit reals called {name:?}"), "none"))
+        let expected = || format!("a constant of 32-bit reals called {:?}", quoted(name));
+        numbers.ok_or_else(|| self.wrong(expected(), "none"))
     }
 
     fn normaliser(&mut self) -> Result<Normaliser, OnnxError> {
@@ -162,6 +164,7 @@ impl<'a> Chain<'a> {
                 return Err(self.wrong(format!("Clip at {limit}"), format!("{:.20?}", found.first())));
             }
         }
+        // The loop above pushed two lists.
         Normaliser::from_mean_and_deviation(&numbers[0], &numbers[1])
             .map_err(|e| self.wrong("mean and deviation of a normaliser", e.to_string()))
     }
@@ -203,6 +206,10 @@ impl<'a> Chain<'a> {
         let &[rows, columns] = shape else {
             return Err(self.wrong("a matrix of weights", format!("{} dimensions", shape.len())));
         };
+        if weight.is_empty() {
+            // One size may be 0 and the other anything.
+            return Err(self.wrong("a matrix of weights", format!("one of {rows} times {columns}")));
+        }
         // As many numbers as the shape says were found, so both fit.
         let (rows, columns) = (rows as usize, columns as usize);
         let layer = match transposed {

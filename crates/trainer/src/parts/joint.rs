@@ -131,8 +131,12 @@ impl Workspace {
         let mut recipes = [self.recipe(&ends[0])?, self.recipe(&ends[1])?];
         let speed = |recipe: &Recipe| recipe.last().environment.command.speed_mps;
         recipes.sort_by(|a, b| speed(a).total_cmp(&speed(b)));
-        let [slow, fast] = recipes.map(|recipe| self.clips.load(&recipe.clips[0].name));
-        let clip = fast?.towards(&slow?, 0.5);
+        let first = |recipe: &Recipe| {
+            let clip = recipe.clips.first();
+            let clip = clip.with_context(|| format!("expected a clip of {}, found none", recipe.skill))?;
+            anyhow::Ok(self.clips.load(&clip.name)?)
+        };
+        let clip = first(&recipes[1])?.towards(&first(&recipes[0])?, 0.5)?;
         Ok(Demonstrations::from_clips(&[(clip, 1.0, true)], &self.model, &self.normalisers.frame)?)
     }
 }

@@ -172,6 +172,16 @@ fn graphs_of_something_else_are_refused() {
     refused("leaves the last 2 numbers", |m| {
         *m.graph.as_mut().unwrap().initializer[0].raw_data.last_mut().unwrap() = 64;
     });
+    refused("one of 0 times 1099511627776", |m| {
+        let graph = m.graph.as_mut().unwrap();
+        let attribute =
+            trainer::onnx::AttributeProto { name: "transB".into(), i: Some(1), ..Default::default() };
+        graph.node[3].attribute.push(attribute);
+        graph.initializer[4].dims = vec![0, 1 << 40];
+        graph.initializer[4].raw_data.clear();
+    });
+    refused("[cut]\", found none", |m| m.graph.as_mut().unwrap().node[0].input[1] = "n".repeat(1 << 20));
+    refused("[cut]\", found none", |m| m.graph.as_mut().unwrap().node[0].output[0] = "n".repeat(1 << 20));
     refused("found none", |m| m.graph = None);
     refused("finite parameters", |m| {
         m.graph.as_mut().unwrap().initializer[4].raw_data[..4].copy_from_slice(&f32::NAN.to_le_bytes());
