@@ -11,11 +11,10 @@ use super::OPSET;
 use super::deployment::{DEPLOYMENT_FILE, Deployment, PolicyFile};
 use super::error::OnnxError;
 use super::proto::{GraphProto, ModelProto, NodeProto};
-use files::quoted;
-use files::{read_bounded, read_text_bounded};
+use files::{quoted, read_bounded, read_text_bounded};
 
-/// Largest model, bytes.
-const MOST_MODEL_BYTES: u64 = 256 << 20;
+/// Largest model, bytes: a million parameters. An empty node takes two bytes and becomes some hundred in memory.
+const MOST_MODEL_BYTES: u64 = 4 << 20;
 
 /// Largest deployment file, bytes.
 const MOST_DEPLOYMENT_BYTES: u64 = 4 << 20;
