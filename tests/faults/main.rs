@@ -209,7 +209,7 @@ fn two_processes_at_once_leave_a_whole_file() {
             assert!(found.is_some() && (writer.name != "checkpoint" || found == told), "{said:?}");
         }
         println!("{}: {MEETINGS} meetings, {refused} refused, {reads} whole reads meanwhile", writer.name);
-        assert!(writer.name != "checkpoint" || refused > 0, "nobody was kept out");
+        assert!(writer.name != "checkpoint" || refused > 0, "expected the lock to refuse a writer");
         assert_eq!(unfinished(folder.path()), [""; 0], "{}", writer.name);
     }
 }

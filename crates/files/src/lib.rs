@@ -1,4 +1,4 @@
-//! Files as the trainer's programs read and write them.
+//! Files as the programs of the workspace read and write them.
 //!
 //! Reads stop at a bound. Writes leave a whole file or none. What a message quotes from a file can't steer a terminal.
 
@@ -6,6 +6,7 @@ mod storage;
 mod text;
 
 pub use storage::{
-    PARTIAL, read_bounded, read_text_bounded, remove_unfinished, write_atomically, write_keeping_previous,
+    PARTIAL, ReadError, check_regular, read, read_bounded, read_text_bounded, remove_unfinished,
+    write_atomically, write_keeping_previous,
 };
 pub use text::{printable, quoted};

@@ -86,23 +86,77 @@ pub fn remove_unfinished(folder: &Path) -> io::Result<()> {
     Ok(())
 }
 
-/// Reads a regular file of at most `most` bytes.
+/// Why a file can't be read.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum ReadError {
+    /// The system can't read it.
+    #[error("cannot read: {0}")]
+    Io(#[from] io::Error),
+    /// It is a folder, a pipe or a device.
+    #[error("expected a regular file, found {found}")]
+    NotRegular {
+        /// What it is.
+        found: &'static str,
+    },
+    /// It is too large.
+    #[error("expected at most {most} bytes, found {found}")]
+    TooLarge {
+        /// The limit.
+        most: u64,
+        /// Its size, or what was read before the reading stopped.
+        found: u64,
+    },
+}
+
+impl From<ReadError> for io::Error {
+    fn from(error: ReadError) -> Self {
+        match error {
+            ReadError::Io(error) => error,
+            other => invalid(other.to_string()),
+        }
+    }
+}
+
+/// Reads a regular file of at most `most` bytes. Nothing is allocated for a larger one, and a pipe is not waited
+/// for.
 ///
 /// # Errors
-/// When it can't be read, is no regular file, or is larger.
+/// [`ReadError`] when it is no regular file, is larger, or can't be read.
+pub fn read(path: &Path, most: u64) -> Result<Vec<u8>, ReadError> {
+    check_regular(path)?;
+    let file = File::open(path)?;
+    let found = file.metadata()?.len();
+    if found > most {
+        return Err(ReadError::TooLarge { most, found });
+    }
+    let mut bytes = Vec::with_capacity(found as usize);
+    // A file may grow while it is read, and those of /proc say that they are empty.
+    file.take(most + 1).read_to_end(&mut bytes)?;
+    match bytes.len() as u64 {
+        found if found > most => Err(ReadError::TooLarge { most, found }),
+        _ => Ok(bytes),
+    }
+}
+
+/// Refuses folders, pipes and devices without opening them.
+///
+/// # Errors
+/// [`ReadError::NotRegular`] for those, [`ReadError::Io`] when there is nothing.
+pub fn check_regular(path: &Path) -> Result<(), ReadError> {
+    let kind = std::fs::metadata(path)?.file_type();
+    if kind.is_file() {
+        return Ok(());
+    }
+    Err(ReadError::NotRegular { found: if kind.is_dir() { "a folder" } else { "a pipe or device" } })
+}
+
+/// As [`read`], with an error of the system.
+///
+/// # Errors
+/// As [`read`]; what is wrong with the file is [`io::ErrorKind::InvalidData`].
 pub fn read_bounded(path: &Path, most: u64) -> io::Result<Vec<u8>> {
-    let metadata = std::fs::metadata(path)?;
-    if !metadata.is_file() {
-        return Err(invalid("expected a regular file".to_owned()));
-    }
-    let too_large = |found: u64| invalid(format!("expected at most {most} bytes, found {found}"));
-    if metadata.len() > most {
-        return Err(too_large(metadata.len()));
-    }
-    let mut data = Vec::with_capacity(usize::try_from(metadata.len()).unwrap_or_default());
-    // A file may grow while it is read.
-    File::open(path)?.take(most + 1).read_to_end(&mut data)?;
-    if data.len() as u64 > most { Err(too_large(data.len() as u64)) } else { Ok(data) }
+    read(path, most).map_err(io::Error::from)
 }
 
 /// Reads a text of at most `most` bytes.
@@ -185,6 +239,22 @@ mod tests {
         assert!(read_bounded(folder.path(), 9).is_err());
         if cfg!(unix) {
             assert!(read_bounded(Path::new("/dev/zero"), 9).unwrap_err().to_string().contains("regular"));
+        }
+    }
+
+    #[test]
+    fn folders_devices_and_large_files_are_refused() {
+        let folder = tempfile::tempdir().unwrap();
+        let found = read(folder.path(), 10).unwrap_err().to_string();
+        assert!(found.contains("expected a regular file, found a folder"), "{found}");
+        let path = folder.path().join("x");
+        std::fs::write(&path, [0; 11]).unwrap();
+        let found = read(&path, 10).unwrap_err().to_string();
+        assert!(found.contains("at most 10 bytes, found 11"), "{found}");
+        assert_eq!(read(&path, 11).unwrap(), [0; 11]);
+        if cfg!(unix) {
+            let found = read(Path::new("/dev/zero"), 10).unwrap_err().to_string();
+            assert!(found.contains("found a pipe or device"), "{found}");
         }
     }
 }

@@ -78,10 +78,10 @@ fn a_trigger_takes_over_again_from_a_dragged_path() {
     app.pad.state.right_trigger = 0.5;
     app.apply(viewer::app::ViewerCommand::Goal(Some(Goal::Path { path: speed, coordinate: 1.0 })));
     app.tick();
-    assert!(app.sim.overrides.goal.is_some(), "a trigger that is held still is no wish");
+    assert!(app.sim.overrides.goal.is_some(), "a trigger held still keeps the goal");
     app.pad.state.right_trigger = 0.1;
     app.tick();
-    assert!(app.sim.overrides.goal.is_some(), "nor is one that is let go");
+    assert!(app.sim.overrides.goal.is_some(), "releasing the trigger keeps the goal");
     app.pad.state.right_trigger = 0.4;
     app.tick();
     assert_eq!(app.sim.overrides.goal, None);

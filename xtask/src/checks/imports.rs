@@ -39,7 +39,7 @@ const RULES: &[Rule] = &[
     rule("clips", &["policy-core", "physics-bridge", "files"], &[]),
     rule("evaluation", &["policy-core", "physics-bridge", "clips", "random", "pca"], &[]),
     rule("trainer", &["policy-core", "physics-bridge", "clips", "random", "files", "evaluation"], &[]),
-    rule("viewer", &["policy-core", "physics-bridge", "gamepad", "pca"], &[]),
+    rule("viewer", &["policy-core", "physics-bridge", "gamepad", "files", "pca"], &[]),
     rule("bevy-plugin", &["policy-core"], &["physics-bridge"]),
     rule(
         "integration-tests",
