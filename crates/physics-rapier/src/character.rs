@@ -5,8 +5,8 @@ mod ground;
 mod push;
 
 use policy_core::contract::{Pose, PoseError};
+use policy_core::glam::Vec3;
 use policy_core::{BodyId, CharacterState, Command, Controller, Heading};
-use rapier3d::math::Vector;
 use rapier3d::pipeline::PhysicsWorld;
 
 use crate::articulation::{Articulation, Drive, PlaceError, Sets};
@@ -220,13 +220,13 @@ impl Character {
 
     /// Centre of mass of the whole character, metres, world space.
     #[must_use]
-    pub fn centre_of_mass(&self) -> policy_core::glam::Vec3 {
+    pub fn centre_of_mass(&self) -> Vec3 {
         let bodies = self.articulation.bodies().iter().map(|&body| &self.world.bodies[body]);
-        let (sum, mass) = bodies.fold((Vector::ZERO, 0.0), |(sum, mass), body| {
+        let (sum, mass) = bodies.fold((Vec3::ZERO, 0.0), |(sum, mass), body| {
             let centre = *body.position() * body.mass_properties().local_mprops.local_com;
             (sum + body.mass() * centre, mass + body.mass())
         });
-        crate::convert::vec3(sum / mass)
+        sum / mass
     }
 
     /// True while a push acts on `body`, or an impulse waits for the next physics step.

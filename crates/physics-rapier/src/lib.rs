@@ -25,8 +25,7 @@
 //!
 //! # Conventions
 //! SI units, radians, world space with z up. Bodies and hinges are in the order of the skeleton. [`Pose`] is laid out
-//! as MuJoCo does, quaternions wxyz. Rapier uses another version of glam than policy-core: only the types of
-//! [`rapier3d`] appear where a game's world is meant, and only policy-core's elsewhere.
+//! as MuJoCo does, quaternions wxyz. Rapier's vectors and rotations are policy-core's: both use one version of glam.
 //!
 //! # What is done about Rapier
 //! | Rapier and its MJCF loader | here |
@@ -48,7 +47,6 @@
 
 mod articulation;
 mod character;
-mod convert;
 mod mjcf;
 mod model;
 mod model_error;

@@ -8,7 +8,6 @@ use policy_core::{BodyId, Skeleton};
 use rapier3d::dynamics::{RigidBodyHandle, RigidBodySet};
 
 use super::Character;
-use crate::convert::vector;
 
 /// The pushes under way, one entry for each body. World axes, at the centre of mass of each body.
 pub(super) struct Pushes {
@@ -52,7 +51,7 @@ impl Pushes {
                 force += self.forces[index];
             }
             if force != Vec3::ZERO {
-                bodies[handle].add_force(vector(force), true);
+                bodies[handle].add_force(force, true);
             }
         }
     }
