@@ -45,15 +45,13 @@ pub use character::{
 };
 pub use crowd::{Crowd, CrowdError};
 pub use description::body_poses::BodyPoses;
-pub use description::ground::HeightField;
 pub use description::ground_kind::GroundKind;
 pub use description::model::Model;
 pub use description::model_error::ModelError;
-pub use description::settings::Settings;
 pub use description::shape::{Shape, ShapeKind};
 pub use description::terrain::Terrain;
 /// What policy-core says of every physics of a character.
 pub use policy_core::contract::{
-    CONTROL_HZ, MAX_DEPTH_M, MAX_DISTANCE_M, MAX_PUSHED_MPS, MAX_SPEED_MPS, MAX_SPIN_RADPS, Pose, PoseError,
-    PushError, WALKING_START_MPS,
+    CONTROL_HZ, HeightField, MAX_DEPTH_M, MAX_DISTANCE_M, MAX_PUSHED_MPS, MAX_SPEED_MPS, MAX_SPIN_RADPS,
+    PhysicsCharacter, Pose, PoseError, PushError, SettingError, Settings, WALKING_START_MPS,
 };

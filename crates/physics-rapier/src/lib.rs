@@ -53,13 +53,13 @@ mod model_error;
 mod skeleton;
 
 pub use articulation::{Articulation, Drive, PlaceError, Removed, Sets};
-pub use character::{Cause, Character, Diverged};
+pub use character::{Cause, Character, Diverged, ModelMismatch, Snapshot, SnapshotMismatch};
 pub use model::Model;
 pub use model_error::ModelError;
 /// What policy-core says of every physics of a character.
 pub use policy_core::contract::{
-    CONTROL_HZ, MAX_DEPTH_M, MAX_DISTANCE_M, MAX_SPEED_MPS, MAX_SPIN_RADPS, Pose, PoseError, PushError,
-    WALKING_START_MPS,
+    CONTROL_HZ, HeightField, MAX_DEPTH_M, MAX_DISTANCE_M, MAX_PUSHED_MPS, MAX_SPEED_MPS, MAX_SPIN_RADPS,
+    PhysicsCharacter, Pose, PoseError, PushError, SettingError, Settings, WALKING_START_MPS,
 };
 /// Rapier as this crate uses it.
 pub use rapier3d;
