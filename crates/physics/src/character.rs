@@ -12,11 +12,11 @@ use crate::{Engine, Model, ModelMismatch};
 #[derive(Debug)]
 pub struct Character {
     model: Model,
-    body: Body,
+    pub(crate) body: Body,
 }
 
 #[derive(Debug)]
-enum Body {
+pub(crate) enum Body {
     Mujoco(Box<physics_bridge::Character>),
     Rapier(Box<physics_rapier::Character>),
 }

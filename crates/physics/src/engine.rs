@@ -47,6 +47,12 @@ impl Engine {
         }
     }
 
+    /// True when its characters tell the force of each contact.
+    #[must_use]
+    pub const fn tells_contacts(self) -> bool {
+        matches!(self, Engine::Mujoco)
+    }
+
     /// True when its characters keep the last seconds, to go back to.
     #[must_use]
     pub const fn keeps_history(self) -> bool {

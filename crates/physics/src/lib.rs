@@ -1,7 +1,7 @@
 //! A character in MuJoCo or in Rapier behind one type: the measures and the demo choose an engine by its name.
 //!
 //! A [`Model`] is described by MuJoCo in either case: shapes, terrain, settings. A [`Character`] lives in the engine of
-//! its model. What an engine lacks is told by [`Engine::keeps_history`] and the like, and never imitated.
+//! its model. What an engine lacks is said by [`Engine::keeps_history`] and the like, and not imitated.
 //!
 //! ```
 //! # fn main() -> Result<(), Box<dyn std::error::Error>> {
@@ -20,9 +20,11 @@
 
 mod character;
 mod engine;
+mod history;
 mod model;
 
 pub use character::{Character, Diverged, Snapshot, SnapshotMismatch};
 pub use engine::Engine;
+pub use history::NotRecorded;
 pub use model::{Model, ModelError, ModelMismatch};
 pub use policy_core::contract::PhysicsCharacter;

@@ -16,7 +16,7 @@ use crate::state::CharacterState;
 /// SI units, radians, world space with z up.
 pub trait PhysicsCharacter {
     /// Why a tick was undone.
-    type Diverged: core::error::Error + Send + Sync + 'static;
+    type Diverged: core::error::Error + Send + 'static;
 
     /// Bodies, hinges and roles.
     fn skeleton(&self) -> &Arc<Skeleton>;
