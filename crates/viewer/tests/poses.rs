@@ -6,6 +6,7 @@ use std::path::Path;
 use std::process::Command;
 
 use common::{gpu, simulation};
+use physics::PhysicsCharacter as _;
 use physics_bridge::Pose;
 use policy_core::{BlendMode, GamepadState, Heading};
 use viewer::app::{App, PanelLayout, ViewerCommand};

@@ -206,6 +206,8 @@ mod tests {
     fn wrong_values_are_refused_and_say_what_is_expected() {
         assert!(error(&["--terrain", "lava"]).contains("flat, wavy, steps"));
         assert!(error(&["--mode", "add"]).contains("parameters, actions, switch"));
+        assert!(error(&["--physics", "bullet"]).contains("mujoco, rapier"));
+        assert!(error(&["--ghost", "bullet"]).contains("other"));
         assert!(error(&["--size", "12x"]).contains("1280x720"));
         assert!(error(&["--size", "8192x8192"]).contains("at most 8294400 pixels"));
         assert!(error(&["--characters", "0"]).contains("1 to 200"));
