@@ -36,6 +36,7 @@
 //! | let limbs touch each other | they do not; characters touch each other |
 //! | damp a free root, let links sleep | neither |
 //! | have rigid joint limits | limits are as soft as MuJoCo's default ones |
+//! | hold a foot in every direction alike | friction is 0.8 of the MJCF's, the mean of MuJoCo's pyramid |
 //! | lose impulses on links | pushes and impulses are forces |
 //! | read the files that an MJCF names | such an MJCF is refused |
 //!
