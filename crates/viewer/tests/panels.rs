@@ -5,7 +5,7 @@ mod common;
 use common::app_with;
 use common::harness::{click, harness, open};
 use egui::accesskit::Role;
-use egui_kittest::kittest::Queryable as _;
+use egui_kittest::kittest::{NodeT as _, Queryable as _};
 use policy_core::{Blend, BlendMode, Button, Goal, NodeId, SkillId};
 use viewer::analysis::Analysis;
 use viewer::app::{Failure, PanelKind, Preset, Record, ViewerCommand};

@@ -29,7 +29,8 @@ pub fn measure(workspace: &Workspace) -> Result<Map<String, Value>> {
     let steps = ["run", "--release", "-p", "physics", "--example", "bench_step", "--", "--json"];
     let steps = output_of(workspace.cargo().args(steps))?;
     let mut figures = parse_figures(&steps, &STEPS).context("read what the example bench_step wrote")?;
-    let arguments = ["run", TOOLCHAIN, "cargo", "run", "--release", "--example", "bench_tick", "--", "--json"];
+    let arguments =
+        ["run", TOOLCHAIN, "cargo", "run", "--release", "--example", "bench_tick", "--", "--json"];
     let mut ticks = workspace.command("rustup");
     // Whatever toolchain runs this program must not be forced upon the plug-in.
     ticks.args(arguments).current_dir(plug_in).env_remove("RUSTUP_TOOLCHAIN").env_remove("CARGO");
