@@ -106,7 +106,7 @@ pub struct CharacterReport {
     pub node: String,
     /// The skill that runs.
     pub skill: Option<String>,
-    /// It lies on the ground.
+    /// It has fallen and is not on its feet again.
     pub fallen: bool,
     /// Velocity of the root, metres per second, Bevy's world.
     pub velocity: Vec3,

@@ -127,11 +127,18 @@ fn follow_packs(
     mut failures: MessageReader<AssetLoadFailedEvent<PackAsset>>,
     mut errors: MessageWriter<CharacterError>,
 ) {
+    // The asset server may send the same failure twice.
+    let mut last = None;
     for failure in failures.read() {
+        let words = (failure.path.to_string(), failure.error.to_string());
+        if last.as_ref() == Some(&words) {
+            continue;
+        }
         for (entity, ..) in characters.iter().filter(|(_, character, _)| character.pack.id() == failure.id) {
-            let (path, reason) = (failure.path.to_string(), failure.error.to_string());
+            let (path, reason) = words.clone();
             errors.write(CharacterProblem::Load { path, reason }.of(entity));
         }
+        last = Some(words);
     }
     for (entity, character, mut controller) in &mut characters {
         let Some(asset) = packs.get(&character.pack) else { continue };
@@ -195,15 +202,18 @@ fn decide(
         if let Some(skill) = tick.skill_started {
             started.write(SkillStarted { character: entity, skill, name: name(skill) });
         }
-        if tick.fallen && !report.fallen {
+        // A controller that recovers by itself starts the recovery skill in the tick in which it has fallen.
+        let recovers = tick.skill.is_some_and(|progress| Some(progress.skill) == pack.recovery());
+        let down = tick.fallen || recovers;
+        if down && !report.fallen {
             fell.write(Fell { character: entity });
-        } else if report.fallen && !tick.fallen {
+        } else if report.fallen && !down {
             rose.write(Rose { character: entity });
         }
         report.ticks += 1;
         report.node.clone_from(&pack.graph().node(tick.position.nearest_node()).name);
         report.skill = tick.skill.map(|progress| name(progress.skill));
-        report.fallen = tick.fallen;
+        report.fallen = down;
         report.velocity = axes::to_bevy(controller.sensed.root().linear_velocity);
         report.tick = tick;
     }

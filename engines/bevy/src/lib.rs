@@ -24,19 +24,27 @@ pub mod axes;
 mod body;
 mod character;
 mod core_plugin;
+#[cfg(feature = "debug")]
+mod debug;
 mod input;
 mod messages;
 mod pack_asset;
 mod rapier;
+#[cfg(feature = "render")]
+mod shapes;
 mod skin;
 
 pub use body::{BodyPose, PolicyBodies, PolicyBody};
 pub use character::{CharacterCommand, CharacterGoal, CharacterReport, PolicyCharacter, PolicyController};
 pub use core_plugin::{CorePlugin, PolicySpaceSystems};
+#[cfg(feature = "debug")]
+pub use debug::{PolicyDebugPlugin, PolicyGizmos};
 pub use input::{PlayerInput, PolicyInputPlugin};
 pub use messages::{CharacterError, CharacterProblem, Fell, Rose, SkillEnded, SkillStarted};
 pub use pack_asset::{PackAsset, PackLoadError, PackLoader};
 pub use rapier::{PolicyRapierPlugin, RapierArticulation, RapierCharacter};
+#[cfg(feature = "render")]
+pub use shapes::{BodyMeshes, BodyMeshesPlugin};
 pub use skin::{PolicySkin, PolicySkinPlugin};
 
 /// The policies, as this crate uses them.
@@ -61,10 +69,15 @@ pub struct PolicySpacePlugins;
 
 impl PluginGroup for PolicySpacePlugins {
     fn build(self) -> PluginGroupBuilder {
-        PluginGroupBuilder::start::<Self>()
+        let group = PluginGroupBuilder::start::<Self>()
             .add(CorePlugin::default())
             .add(PolicyRapierPlugin::default())
             .add(PolicyInputPlugin)
-            .add(PolicySkinPlugin)
+            .add(PolicySkinPlugin);
+        #[cfg(feature = "debug")]
+        let group = group.add(PolicyDebugPlugin);
+        #[cfg(feature = "render")]
+        let group = group.add(BodyMeshesPlugin);
+        group
     }
 }

@@ -66,8 +66,8 @@ fn bind(
     mut commands: Commands,
     skins: Query<(Entity, &PolicySkin), Without<SkinBinding>>,
     characters: Query<&PolicyController, With<PolicyBodies>>,
-    children: Query<&Children>,
-    nodes: Query<(&Transform, Option<&Name>)>,
+    children: Query<&'static Children>,
+    nodes: Query<(&'static Transform, Option<&'static Name>)>,
 ) {
     for (entity, skin) in &skins {
         let Ok(controller) = characters.get(skin.character) else { continue };

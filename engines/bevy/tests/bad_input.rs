@@ -6,7 +6,7 @@ use bevy::ecs::system::RunSystemOnce;
 use bevy::prelude::*;
 use bevy_policy_space::RapierArticulation;
 use bevy_policy_space::prelude::*;
-use bevy_rapier3d::prelude::{RapierContextJoints, RapierContextSimulation, WriteRapierContext};
+use bevy_rapier3d::prelude::{RapierContextJoints, WriteRapierContext};
 use common::{
     body, game, game_with_assets, heard, pack_bytes, place, report, root_height, run, spawn, walk_to,
 };
@@ -91,7 +91,7 @@ fn a_broken_file_under_a_running_character_changes_nothing() {
     std::fs::write(&file, b"half a fi").expect("a file");
     app.world().resource::<AssetServer>().reload("hero.pack.safetensors");
     wait_until(&mut app, "a report", |app| !heard(app).errors.is_empty());
-    assert_eq!(error_with(&app, "hero.pack.safetensors"), 1);
+    assert_eq!(error_with(&app, "hero.pack.safetensors"), 1, "{:?}", heard(&app).errors);
     run(&mut app, 1.0);
     assert!(walks(&app, character));
 
@@ -198,16 +198,17 @@ fn a_body_taken_out_of_rapier_is_built_anew() {
     let shin = own.articulation().bodies()[5];
     let removed = app.world_mut().run_system_once(move |mut context: WriteRapierContext| {
         let mut world = context.single_mut().expect("one world");
-        let (world_bodies, joints) = (&mut *world.rigidbody_set, &mut *world.joints);
-        world_bodies
+        let (simulation, bodies, joints) =
+            (&mut *world.simulation, &mut *world.rigidbody_set, &mut *world.joints);
+        bodies
             .bodies
             .remove(
                 shin,
-                &mut RapierContextSimulation::default().islands,
+                &mut simulation.islands,
                 &mut world.colliders.colliders,
                 &mut joints.impulse_joints,
                 &mut joints.multibody_joints,
-                &mut world_bodies.soft_bodies,
+                &mut bodies.soft_bodies,
                 true,
             )
             .is_some()

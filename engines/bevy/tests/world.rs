@@ -4,6 +4,7 @@ mod common;
 
 use std::hash::{DefaultHasher, Hash, Hasher};
 
+use bevy::ecs::system::RunSystemOnce;
 use bevy::prelude::*;
 use bevy_policy_space::RapierArticulation;
 use bevy_policy_space::prelude::*;
@@ -13,11 +14,12 @@ use bevy_rapier3d::prelude::{
 };
 use common::{body, game, heard, place, report, root_height, run, spawn, walk_to};
 
+/// A long crate of 3 kg: a walk may veer.
 fn crate_at(app: &mut App, at: Vec3) -> Entity {
     app.world_mut()
         .spawn((
             RigidBody::Dynamic,
-            Collider::cuboid(0.2, 0.2, 0.2),
+            Collider::cuboid(1.5, 0.2, 0.2),
             ColliderMassProperties::Mass(3.0),
             Transform::from_translation(at),
         ))
@@ -46,8 +48,8 @@ fn it_gets_up_after_a_hit() {
     app.world_mut()
         .entity_mut(torso)
         .insert(ExternalImpulse { impulse: Vec3::new(150.0, 0.0, 0.0), ..default() });
-    run(&mut app, 1.5);
-    assert_eq!(heard(&app).fell, 1, "150 N s on the torso throw it down");
+    run(&mut app, 4.0);
+    assert!(heard(&app).fell >= 1, "150 N s on the torso throw it down");
     run(&mut app, 15.0);
     let heard = heard(&app);
     assert!(heard.rose >= 1 && !heard.started.is_empty() && !heard.ended.is_empty(), "{heard:?}");
@@ -94,8 +96,6 @@ fn note_touches(mut touched: ResMut<Touched>, mut events: MessageReader<Collisio
         touched.0.extend([a, b]);
     }
 }
-
-use bevy::ecs::system::RunSystemOnce;
 
 /// Bodies and colliders in Rapier's world.
 fn counts(app: &mut App) -> (usize, usize) {

@@ -40,7 +40,6 @@ const RULES: &[Rule] = &[
     rule("evaluation", &["policy-core", "physics-bridge", "clips", "random", "pca"], &[]),
     rule("trainer", &["policy-core", "physics-bridge", "clips", "random", "files", "evaluation"], &[]),
     rule("viewer", &["policy-core", "physics-bridge", "gamepad", "files", "pca"], &[]),
-    rule("bevy-plugin", &["policy-core"], &["physics-bridge"]),
     rule(
         "integration-tests",
         &[
@@ -51,7 +50,6 @@ const RULES: &[Rule] = &[
             "clips",
             "trainer",
             "viewer",
-            "bevy-plugin",
         ],
         &[],
     ),
@@ -85,7 +83,7 @@ const OWNED: &[Owned] = &[
     owned("egui*", &["viewer"], DRAWS),
     owned("gltf", &["viewer"], DRAWS),
     owned("gemm", &["trainer"], "only trainer learns"),
-    owned("bevy*", &["bevy-plugin"], "only bevy-plugin knows an engine"),
+    owned("bevy*", &[], "only engines/bevy knows Bevy, in a workspace of its own"),
 ];
 
 /// Crates of the workspace below which, at any depth, none of these may lie.

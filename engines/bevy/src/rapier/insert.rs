@@ -13,7 +13,7 @@ use crate::body::{self, BodyPose, PolicyBodies, PolicyBody};
 use crate::character::{PolicyCharacter, PolicyController};
 use crate::messages::{CharacterError, CharacterProblem};
 
-use super::place::{Place, stand};
+use super::place::{GroundPose, stand};
 use super::{Models, RapierArticulation, RapierCharacter, name_bodies, sets, world_of};
 
 /// Puts characters in whose pack is loaded.
@@ -33,7 +33,7 @@ pub(super) fn put_in(
     for (character, mut controller, wanted, transform) in &mut waiting {
         let pack = controller.controller.pack().clone();
         let model = models.of(&pack).map_err(|error| CharacterProblem::Body { message: error.to_string() });
-        let place = Place::of(transform).ok_or(CharacterProblem::Transform { found: *transform });
+        let place = GroundPose::of(transform).ok_or(CharacterProblem::Transform { found: *transform });
         let (model, good) = match (model, place) {
             (Ok(model), Ok(place)) => (model, place),
             (Err(problem), _) | (_, Err(problem)) => {
@@ -131,16 +131,16 @@ pub(super) fn take_out(
 }
 
 /// Takes everything away that came with `PolicyCharacter`, when the game removes that alone.
-pub(super) fn forget(
-    removed: On<Remove<PolicyCharacter>>,
-    mut commands: Commands,
-    own: Query<&RapierArticulation>,
-) {
-    if let Ok(own) = own.get(removed.entity) {
-        commands.entity(own.links).try_despawn();
-    }
-    if let Ok(mut character) = commands.get_entity(removed.entity) {
+pub(super) fn forget(removed: On<Remove<PolicyCharacter>>, mut commands: Commands) {
+    let character = removed.entity;
+    commands.queue(move |world: &mut World| {
+        // A character that is despawned takes its bodies along.
+        let Ok(mut character) = world.get_entity_mut(character) else { return };
+        let links = character.get::<RapierArticulation>().map(|own| own.links);
         character.despawn_related::<PolicyBodies>();
-        character.try_remove::<(RapierArticulation, PolicyController, BodyPose)>();
-    }
+        character.remove::<(RapierArticulation, PolicyController, BodyPose)>();
+        if let Some(links) = links {
+            world.try_despawn(links).ok();
+        }
+    });
 }

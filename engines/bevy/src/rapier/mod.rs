@@ -27,7 +27,7 @@ use policy_core::contract::Pose;
 use crate::character::PolicyCharacter;
 use crate::core_plugin::PolicySpaceSystems;
 
-use self::place::Place;
+use self::place::GroundPose;
 
 /// Rapier's solver iterations in a fixed step. With the four of Rapier's default characters fall more easily.
 const SOLVER_ITERATIONS: usize = 2;
@@ -65,7 +65,7 @@ pub struct RapierArticulation {
     /// Stands for the massless links between the hinges of one body, which Rapier has and the skeleton has not.
     links: Entity,
     /// Where it last stood well.
-    good: Place,
+    good: GroundPose,
     fault: Option<Fault>,
 }
 
@@ -148,6 +148,7 @@ impl Plugin for PolicyRapierPlugin {
             (
                 (
                     repair::put_back,
+                    repair::check,
                     repair::rebuild,
                     insert::put_in,
                     place::teleport,

@@ -16,12 +16,12 @@ use super::{Fault, RapierArticulation, sets, world_of};
 
 /// A point on the ground, Bevy's world, and a heading.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Place {
+pub(super) struct GroundPose {
     pub point: Vec3,
     pub heading: Heading,
 }
 
-impl Place {
+impl GroundPose {
     /// The place of a `Transform`; `None` when that is not finite.
     pub fn of(transform: &Transform) -> Option<Self> {
         (transform.translation.is_finite() && transform.rotation.is_finite()).then(|| Self {
@@ -36,7 +36,7 @@ pub(super) fn stand(
     articulation: &mut Articulation,
     stand: &Pose,
     world: &mut RapierContextMut,
-    place: Place,
+    place: GroundPose,
 ) -> Result<(), PlaceError> {
     let mut pose = stand.clone();
     let q = &stand.qpos;
@@ -80,7 +80,7 @@ pub(super) fn teleport(
     let Some(mut world) = world_of(&mut context) else { return };
     for (entity, mut transform, mut pose, mut own, mut controller) in &mut characters {
         let Some(written) = pose.written.filter(|written| *written != *transform) else { continue };
-        let Some(place) = Place::of(&transform) else {
+        let Some(place) = GroundPose::of(&transform) else {
             errors.write(CharacterProblem::Transform { found: *transform }.of(entity));
             *transform = written;
             continue;

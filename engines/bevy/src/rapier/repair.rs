@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use bevy::prelude::*;
-use bevy_rapier3d::plugin::context::systemparams::WriteRapierContext;
+use bevy_rapier3d::plugin::context::systemparams::{ReadRapierContext, WriteRapierContext};
 use bevy_rapier3d::prelude::{ColliderDisabled, RigidBodyDisabled};
 use policy_core::contract::Pose;
 
@@ -36,6 +36,27 @@ pub(super) fn put_back(
         if own.fault.is_none() && !own.entities.iter().all(|&entity| bodies.contains(entity)) {
             own.fault = Some(Fault::KeepPose);
             errors.write(CharacterProblem::Component { component: "PolicyBody" }.of(character));
+        }
+    }
+}
+
+/// Catches numbers that are not finite before Rapier steps, which panics on some of them.
+pub(super) fn check(
+    mut characters: Query<(Entity, &mut RapierArticulation)>,
+    context: ReadRapierContext,
+    mut errors: MessageWriter<CharacterError>,
+) {
+    let Ok(world) = context.single() else { return };
+    for (entity, mut own) in characters.iter_mut().filter(|(_, own)| own.fault.is_none()) {
+        let joints = &world.joints.multibody_joints;
+        let link = joints.rigid_body_link(own.articulation.bodies()[0]);
+        let Some(multibody) = link.and_then(|link| joints.get_multibody(link.multibody)) else { continue };
+        let moves = multibody.generalized_velocity().iter().all(|speed| speed.is_finite());
+        let mut links = multibody.links();
+        if !moves || !links.all(|link| link.local_to_world().is_finite()) {
+            own.fault = Some(Fault::Stand);
+            let message = "a position or velocity is not finite".into();
+            errors.write(CharacterProblem::Diverged { message }.of(entity));
         }
     }
 }

@@ -9,10 +9,10 @@ use physics_rapier::Diverged;
 
 use crate::axes;
 use crate::body::{self, BodyPose, PolicyBody};
-use crate::character::PolicyController;
+use crate::character::{CharacterReport, PolicyController};
 use crate::messages::{CharacterError, CharacterProblem};
 
-use super::place::Place;
+use super::place::GroundPose;
 use super::{Fault, RapierArticulation, world_of};
 
 /// How far below a character its ground may be, metres.
@@ -20,7 +20,7 @@ const GROUND_RANGE: f32 = 200.0;
 
 /// Senses the characters whose control tick is due, and the ground below them.
 pub(super) fn sense(
-    mut characters: Query<(Entity, &mut PolicyController, &mut RapierArticulation)>,
+    mut characters: Query<(Entity, &CharacterReport, &mut PolicyController, &mut RapierArticulation)>,
     mut context: WriteRapierContext,
     mut errors: MessageWriter<CharacterError>,
 ) {
@@ -31,7 +31,7 @@ pub(super) fn sense(
     let dispatcher = world.simulation.narrow_phase.query_dispatcher();
     let broad_phase = &world.simulation.broad_phase;
     let query = broad_phase.as_query_pipeline(dispatcher, set, &world.colliders.colliders, filter);
-    for (entity, mut controller, mut own) in &mut characters {
+    for (entity, report, mut controller, mut own) in &mut characters {
         if controller.due == 0 || own.fault.is_some() {
             continue;
         }
@@ -41,9 +41,9 @@ pub(super) fn sense(
             let ray = Ray::new(root.translation(), Vec3::NEG_Y);
             if let Some((_, distance)) = query.cast_ray(&ray, GROUND_RANGE, true) {
                 ground = root.translation().y - distance;
-                if !controller.controller.report().fallen {
+                if !report.fallen {
                     let at = Transform::from_isometry(body::ground_pose(controller));
-                    own.good = Place::of(&at).unwrap_or(own.good);
+                    own.good = GroundPose::of(&at).unwrap_or(own.good);
                 }
             }
         }
