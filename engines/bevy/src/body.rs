@@ -70,11 +70,14 @@ impl BodyPose {
 }
 
 /// Writes the `Transform` of characters and bodies, between the last two fixed steps.
-pub(crate) fn interpolate(time: Res<Time<Fixed>>, mut bodies: Query<(&mut Transform, &mut BodyPose)>) {
+pub(crate) fn interpolate(
+    time: Res<Time<Fixed>>,
+    mut bodies: Query<(&mut Transform, &mut BodyPose, Has<PolicyBody>)>,
+) {
     let fraction = time.overstep_fraction().clamp(0.0, 1.0);
-    for (mut transform, mut pose) in &mut bodies {
+    for (mut transform, mut pose, is_body) in &mut bodies {
         // A character that the game has just put elsewhere is left alone until the next fixed step takes note.
-        let moved_by_game = pose.written.is_some_and(|written| written != *transform);
+        let moved_by_game = !is_body && pose.written.is_some_and(|written| written != *transform);
         if !pose.is_set || moved_by_game {
             continue;
         }

@@ -124,13 +124,18 @@ pub struct PolicyController {
     pub sensed: CharacterState,
     /// The bodies when every joint is at zero, written by the physics.
     pub rest: CharacterState,
+    /// True once the physics has put the body in. Before that it does not tick.
+    pub embodied: bool,
     pub(crate) rate: FixedRate,
     /// Control ticks that this fixed step is to run.
     pub(crate) due: u32,
     pub(crate) ticked: bool,
     /// A pack that could not take the place of its own; reported once.
     pub(crate) refused: Option<std::sync::Arc<policy_core::CharacterPack>>,
+    /// Names that were reported.
     pub(crate) unknown: Vec<Cow<'static, str>>,
+    /// A target that is not finite was reported.
+    pub(crate) target_refused: bool,
 }
 
 impl PolicyController {
@@ -142,11 +147,13 @@ impl PolicyController {
             controller: Controller::with_config(asset.pack.clone(), config),
             sensed: state.clone(),
             rest: state,
+            embodied: false,
             rate: FixedRate::new(asset.pack.control_hz()),
             due: 0,
             ticked: false,
             refused: None,
             unknown: Vec::new(),
+            target_refused: false,
         }
     }
 
@@ -158,8 +165,12 @@ impl PolicyController {
 
     /// Counts the control ticks of a fixed step. The first step has one.
     pub(crate) fn advance(&mut self, step_secs: f32) {
-        self.due = if self.ticked { self.rate.advance(step_secs) } else { 1 };
-        self.ticked = true;
+        self.due = match (self.embodied, self.ticked) {
+            (false, _) => 0,
+            (true, false) => 1,
+            (true, true) => self.rate.advance(step_secs),
+        };
+        self.ticked = self.embodied;
     }
 
     /// Starts anew, as after the character was put elsewhere.

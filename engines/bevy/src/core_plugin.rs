@@ -190,6 +190,11 @@ fn decide(
         if command.skill.is_some() {
             command.skill = None;
         }
+        let bad_target = command.target.filter(|target| !target.is_finite());
+        if let (Some(found), false) = (bad_target, controller.target_refused) {
+            errors.write(CharacterProblem::Target { found }.of(entity));
+        }
+        controller.target_refused = bad_target.is_some();
         let secs = controller.due as f32 * controller.rate.period_secs();
         controller.controller.tick(&controller.sensed, &wanted, secs);
 

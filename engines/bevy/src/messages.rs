@@ -90,6 +90,12 @@ pub enum CharacterProblem {
         /// Newtons or newton seconds.
         found: Vec3,
     },
+    /// The target of a command is not finite. The character stays where it stands.
+    #[error("expected a finite target, found {found}")]
+    Target {
+        /// What was found.
+        found: Vec3,
+    },
     /// The pack lacks a name. That part of the command is ignored.
     #[error("expected a {kind} of the pack, found \"{name}\"")]
     Unknown {

@@ -2,11 +2,15 @@
 
 mod common;
 
+use std::sync::Arc;
+
 use bevy::ecs::system::RunSystemOnce;
 use bevy::prelude::*;
 use bevy_policy_space::RapierArticulation;
 use bevy_policy_space::prelude::*;
 use bevy_rapier3d::prelude::{RapierContextJoints, WriteRapierContext};
+use policy_core::CharacterPack;
+
 use common::{
     body, game, game_with_assets, heard, pack_bytes, place, report, root_height, run, spawn, walk_to,
 };
@@ -71,7 +75,7 @@ fn a_new_pack_takes_over_in_mid_walk() {
     app.world_mut().resource_mut::<Assets<PackAsset>>().insert(&handle, new).expect("the handle's place");
     run(&mut app, 3.0);
     let controller = app.world().get::<PolicyController>(character).expect("a controller");
-    assert!(!std::sync::Arc::ptr_eq(&before, controller.controller.pack()), "it has the new pack");
+    assert!(!Arc::ptr_eq(&before, controller.controller.pack()), "it has the new pack");
     assert_eq!(report(&app, character).node, "walk");
     assert!(place(&app, character).z < z - 1.5 && report(&app, character).ticks > ticks + 80);
     assert_eq!((heard(&app).fell, heard(&app).errors.len()), (0, 0), "{:?}", heard(&app));
@@ -102,10 +106,47 @@ fn a_broken_file_under_a_running_character_changes_nothing() {
     app.world().resource::<AssetServer>().reload("hero.pack.safetensors");
     wait_until(&mut app, "the new pack", |app| {
         let controller = app.world().get::<PolicyController>(character).expect("a controller");
-        !std::sync::Arc::ptr_eq(&before, controller.controller.pack())
+        !Arc::ptr_eq(&before, controller.controller.pack())
     });
     assert!(walks(&app, character));
     std::fs::remove_dir_all(&folder).expect("the folder is ours");
+}
+
+/// The shipped pack with another manifest.
+fn changed_pack(change: impl Fn(&mut policy_core::format::Manifest)) -> PackAsset {
+    let sound = PackAsset::from_bytes(&pack_bytes()).expect("a pack").pack;
+    let mut manifest = sound.manifest().clone();
+    change(&mut manifest);
+    let pack = CharacterPack::from_parts(manifest, sound.tensors().clone()).expect("a sound manifest");
+    PackAsset { pack: Arc::new(pack) }
+}
+
+#[test]
+fn a_pack_without_a_body_is_reported_once() {
+    let mut app = game(64.0);
+    let bodiless = changed_pack(|manifest| manifest.mjcf = None);
+    let pack = app.world_mut().resource_mut::<Assets<PackAsset>>().add(bodiless);
+    let character = app.world_mut().spawn(PolicyCharacter::new(pack)).id();
+    run(&mut app, 0.5);
+    assert_eq!(error_with(&app, "expected a pack with the MJCF"), 1, "{:?}", heard(&app).errors);
+    assert!(app.world().get::<RapierArticulation>(character).is_none());
+}
+
+#[test]
+fn a_pack_for_another_body_does_not_take_over() {
+    let mut app = game(64.0);
+    let character = spawn(&mut app, Vec3::ZERO);
+    run(&mut app, 0.5);
+    // A hinge the other way round.
+    let other = changed_pack(|manifest| {
+        let axis = &mut manifest.skeleton.joints[0].axis;
+        *axis = axis.map(|number| -number);
+    });
+    let handle = app.world().get::<PolicyCharacter>(character).expect("a character").pack.clone();
+    app.world_mut().resource_mut::<Assets<PackAsset>>().insert(&handle, other).expect("the handle's place");
+    run(&mut app, 1.0);
+    assert_eq!(error_with(&app, "same skeleton"), 1, "{:?}", heard(&app).errors);
+    assert!(walks(&app, character));
 }
 
 #[test]
@@ -138,9 +179,10 @@ fn forces_and_names_that_make_no_sense_are_refused() {
         .insert(ExternalImpulse { impulse: Vec3::new(f32::NAN, 0.0, 0.0), ..default() });
     let command = CharacterCommand { skill: Some("no_such_skill".into()), ..default() };
     let command = CharacterCommand { goal: CharacterGoal::Node("no_such_node".into()), ..command };
+    let command = CharacterCommand { target: Some(Vec3::splat(f32::NAN)), ..command };
     app.world_mut().entity_mut(character).insert(command);
     run(&mut app, 1.0);
-    for words in ["finite force on \"torso\"", "skill of the pack", "node of the pack"] {
+    for words in ["finite force on \"torso\"", "skill of the pack", "node of the pack", "finite target"] {
         assert_eq!(error_with(&app, words), 1, "{words}: {:?}", heard(&app).errors);
     }
     assert!(walks(&app, character));

@@ -200,6 +200,18 @@ fn a_new_transform_puts_it_elsewhere() {
 }
 
 #[test]
+fn a_character_that_drops_into_a_void_stands_again_where_it_was() {
+    let mut app = game(64.0);
+    app.world_mut().spawn((Collider::cuboid(1.0, 0.5, 1.0), Transform::from_xyz(300.0, 0.0, 0.0)));
+    let character = spawn(&mut app, Vec3::new(300.0, 0.5, 0.0));
+    run(&mut app, 1.0);
+    app.world_mut().entity_mut(character).insert(walk_to(Vec3::new(300.0, 0.0, -100.0)));
+    run(&mut app, 8.0);
+    assert!(heard(&app).errors.iter().any(|error| error.contains("diverged")), "{:?}", heard(&app).errors);
+    assert!(place(&app, character).y > -4.0, "{}", place(&app, character));
+}
+
+#[test]
 fn transforms_are_interpolated_between_fixed_steps() {
     let mut app = game(64.0);
     let character = spawn(&mut app, Vec3::ZERO);

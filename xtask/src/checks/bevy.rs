@@ -51,7 +51,8 @@ pub fn cargo(workspace: &Workspace, channel: &str) -> Command {
 pub fn channel(workspace: &Workspace) -> Result<String> {
     let file = folder(workspace).join("rust-toolchain.toml");
     let text = std::fs::read_to_string(&file).with_context(|| format!("read {}", file.display()))?;
-    channel_of(&text).with_context(|| format!("expected a line `channel = \"...\"` in {}, found none", file.display()))
+    channel_of(&text)
+        .with_context(|| format!("expected a line `channel = \"...\"` in {}, found none", file.display()))
 }
 
 fn channel_of(text: &str) -> Option<String> {
@@ -62,9 +63,8 @@ fn channel_of(text: &str) -> Option<String> {
 
 /// Installs the toolchain when it is missing.
 fn provide(workspace: &Workspace, channel: &str) -> Result<()> {
-    let there = || {
-        ["clippy", "fmt"].iter().all(|tool| answers(cargo(workspace, channel).args([*tool, "--version"])))
-    };
+    let there =
+        || ["clippy", "fmt"].iter().all(|tool| answers(cargo(workspace, channel).args([*tool, "--version"])));
     if there() {
         return Ok(());
     }

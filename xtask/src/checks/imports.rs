@@ -42,15 +42,7 @@ const RULES: &[Rule] = &[
     rule("viewer", &["policy-core", "physics-bridge", "gamepad", "files", "pca"], &[]),
     rule(
         "integration-tests",
-        &[
-            "policy-core",
-            "gamepad",
-            "physics-bridge",
-            "physics-rapier",
-            "clips",
-            "trainer",
-            "viewer",
-        ],
+        &["policy-core", "gamepad", "physics-bridge", "physics-rapier", "clips", "trainer", "viewer"],
         &[],
     ),
     rule("xtask", &[], &[]),

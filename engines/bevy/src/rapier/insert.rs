@@ -48,7 +48,7 @@ pub(super) fn put_in(
         let (mut articulation, rest, standing) = build(&model, wanted, &mut world, &entities, links);
         stand(&mut articulation, &standing, &mut world, good).expect("a checked pose of bodies just built");
         name_bodies(&mut world);
-        controller.rest = rest;
+        (controller.rest, controller.embodied) = (rest, true);
         let (set, joints) = (&world.rigidbody_set.bodies, &world.joints.multibody_joints);
         articulation
             .sense_into(set, joints, good.point.y, &mut controller.sensed)

@@ -5,7 +5,7 @@ use bevy_rapier3d::plugin::context::systemparams::WriteRapierContext;
 use bevy_rapier3d::prelude::{ExternalForce, ExternalImpulse};
 use bevy_rapier3d::rapier::geometry::Ray;
 use bevy_rapier3d::rapier::pipeline::QueryFilter;
-use physics_rapier::Diverged;
+use physics_rapier::{Cause, Diverged};
 
 use crate::axes;
 use crate::body::{self, BodyPose, PolicyBody};
@@ -103,6 +103,14 @@ pub(super) fn actuate(
     }
 }
 
+/// How far below the ground under its root a part of a character may hang, metres: over the edge of a platform, say.
+const HANGS_M: f32 = 3.0;
+
+/// True for a body that hangs over an edge.
+fn hangs(diverged: &Diverged) -> bool {
+    diverged.cause == Cause::BelowGround && diverged.found < HANGS_M
+}
+
 /// Looks at what Rapier did: catches divergence, and hands the poses to the entities.
 pub(super) fn mirror(
     mut characters: Query<(Entity, &mut PolicyController, &mut RapierArticulation, &mut BodyPose)>,
@@ -126,8 +134,8 @@ pub(super) fn mirror(
                 let skeleton = own.articulation.model().skeleton();
                 let disabled = own.articulation.bodies().iter().any(|&body| !set[body].is_enabled());
                 match Diverged::check(skeleton, &controller.sensed, 0) {
-                    Err(diverged) => Some(diverged.to_string()),
-                    Ok(()) => disabled.then(|| "Rapier disabled a body that was not finite".into()),
+                    Err(diverged) if !hangs(&diverged) => Some(diverged.to_string()),
+                    _ => disabled.then(|| "Rapier disabled a body that was not finite".into()),
                 }
                 .map(|message| CharacterProblem::Diverged { message })
             }
