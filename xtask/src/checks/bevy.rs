@@ -23,7 +23,9 @@ pub fn check(workspace: &Workspace) -> Result<Verdict> {
     run(cargo(workspace, &channel).args(["fmt", "--check"])).context("formatting")?;
     run(cargo(workspace, &channel).args(["clippy", "--locked", "--all-targets", "--", "-D", "warnings"]))
         .context("clippy")?;
-    run(cargo(workspace, &channel).args(["test", "--locked"])).context("tests")?;
+    // Without the examples, which clippy has compiled.
+    run(cargo(workspace, &channel).args(["test", "--locked", "--lib", "--tests"])).context("tests")?;
+    run(cargo(workspace, &channel).args(["test", "--locked", "--doc"])).context("documentation tests")?;
     Ok(Verdict::Passed)
 }
 
