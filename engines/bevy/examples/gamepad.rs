@@ -1,6 +1,6 @@
 //! A player steers a character with a gamepad, or with the keys that `PolicyInputPlugin` names.
 //!
-//! `cargo run --release --features window --example gamepad`
+//! `cargo run --release --features window,pads --example gamepad`
 
 mod scene;
 

@@ -1,6 +1,6 @@
 //! A player: a gamepad or the keyboard becomes commands, through policy-core's mapper.
 //!
-//! Real gamepads need Bevy's feature `bevy_gilrs`. Without one the keys are: W A S D to walk, Shift faster, C lower,
+//! Real gamepads need the feature `pads`, or Bevy's own `bevy_gilrs`. Without one the keys are: W A S D to walk, Shift faster, C lower,
 //! Q another style, E roll, Space get up, F jump, G kick.
 
 use bevy::prelude::*;
