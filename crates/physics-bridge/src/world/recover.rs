@@ -1,0 +1,275 @@
+//! What happens to what diverges: a character stands up where it last was well, a prop is taken out, a prop on a joint
+//! goes back to where it was joined. The rest of the world repeats the tick as if that had been so from its start.
+
+use mujoco_rs::wrappers::mj_data::MjtWarning;
+use policy_core::contract::ROOT_QPOS;
+
+use super::World;
+use super::forces::reference;
+use super::handle::{CharacterHandle, PropHandle};
+use super::places::Owner;
+use super::solids::vec3;
+use crate::cause::{Cause, Excess};
+use crate::kinematics::{fault, velocity_at};
+
+/// Where what was taken out is kept, far below everything.
+const ASIDE: [f64; 3] = [0.0, 0.0, -5000.0];
+
+/// Numbers beyond this, MuJoCo calls bad.
+const HUGE: f64 = 1e10;
+
+/// Something that diverged, and what was done about it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
+pub struct Divergence {
+    /// What diverged; `None` when it belongs to nothing. The handle of what was taken out is stale by now.
+    pub what: Option<Diverging>,
+    /// What was wrong.
+    pub cause: Cause,
+    /// Value and limit, where there is one.
+    pub excess: Option<Excess>,
+    /// What was done.
+    pub remedy: Remedy,
+}
+
+/// What can diverge.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Diverging {
+    /// A character.
+    Character(CharacterHandle),
+    /// A prop, and all that hangs on it.
+    Prop(PropHandle),
+}
+
+/// What is done about a divergence.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum Remedy {
+    /// It stands, or hangs, where it last was well.
+    PutBack,
+    /// It is no longer in the world.
+    TakenOut,
+    /// Targets that are not finite were ignored; the joints keep those of before.
+    Ignored,
+    /// Nothing.
+    None,
+}
+
+/// Where a character last was well: on the ground, metres, at what height, facing where, radians.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(super) struct Standing {
+    pub place: [f32; 3],
+    pub heading: f32,
+}
+
+/// Something found wrong in a tick. A prop is named by what its tree hangs on.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Culprit {
+    pub owner: Owner,
+    pub cause: Cause,
+    pub excess: Option<Excess>,
+}
+
+impl World {
+    /// Notes that something is wrong with a body, once for each character and each tree of props.
+    fn accuse(&mut self, body: usize, cause: Cause, excess: Option<Excess>) {
+        let owner = match self.places.owners[body] {
+            Owner::Prop(prop) => Owner::Prop(self.scene.root_of(prop)),
+            Owner::Character(index, _) => Owner::Character(index, policy_core::BodyId::new(0)),
+            owner => owner,
+        };
+        if !self.culprits.iter().any(|culprit| culprit.owner == owner) && self.is_present(owner) {
+            self.culprits.push(Culprit { owner, cause, excess });
+        }
+    }
+
+    /// Finds every tree with numbers that are not finite or huge, if MuJoCo has warned of any. True when there is one.
+    pub(super) fn accuse_warned(&mut self) -> bool {
+        let is_bad = |number: &f64| number.is_nan() || number.abs() > HUGE;
+        let quiet = self.data.warning().iter().all(|warning| warning.number == 0);
+        if quiet && !self.data.qpos().iter().chain(self.data.qvel()).any(is_bad) {
+            return false;
+        }
+        for index in 0..self.data.qpos().len() {
+            if is_bad(&self.data.qpos()[index]) {
+                self.accuse(self.places.qpos_bodies[index], Cause::BadPosition, None);
+            }
+        }
+        for index in 0..self.data.qvel().len() {
+            let body = self.data.model().dof_bodyid()[index] as usize;
+            if is_bad(&self.data.qvel()[index]) {
+                self.accuse(body, Cause::BadVelocity, None);
+            } else if is_bad(&self.data.qacc()[index]) {
+                self.accuse(body, Cause::BadAcceleration, None);
+            }
+        }
+        let singular = &self.data.warning()[MjtWarning::mjWARN_INERTIA as usize];
+        if let (1.., Ok(dof)) = (singular.number, usize::try_from(singular.lastinfo)) {
+            let body = self.data.model().dof_bodyid().get(dof).map_or(0, |&body| body as usize);
+            self.accuse(body, Cause::SingularInertia, None);
+        }
+        for (cause, warning) in Cause::WARNINGS.into_iter().zip(self.data.warning()) {
+            let full = matches!(cause, Cause::ContactsFull | Cause::ConstraintsFull);
+            let told = |d: &Divergence| d.cause == cause;
+            if full && warning.number > 0 && !self.divergences.iter().any(told) {
+                self.divergences.push(Divergence { what: None, cause, excess: None, remedy: Remedy::None });
+            }
+        }
+        if self.culprits.is_empty() {
+            self.clear_warnings();
+        }
+        !self.culprits.is_empty()
+    }
+
+    /// Finds every tree with a body beyond the limits of plausible motion. True when there is one. Everything derived
+    /// from the state must be up to date.
+    pub(super) fn accuse_implausible(&mut self) -> bool {
+        for body in 1..self.places.owners.len() {
+            if matches!(self.places.owners[body], Owner::Ground | Owner::Fixture(_)) {
+                continue;
+            }
+            let position = vec3(self.data.xpos()[body]);
+            let motion = velocity_at(self.data.cvel()[body], position - reference(&self.data, body));
+            let ground = self.ground.height_at(position.x as f32, position.y as f32);
+            if let Some((cause, excess)) = fault(position, motion, ground) {
+                self.accuse(body, cause, Some(excess));
+            }
+        }
+        !self.culprits.is_empty()
+    }
+
+    /// Deals with what was found wrong. In the first `round` props go before characters, who may just have met one.
+    pub(super) fn remedy(&mut self, round: u32) {
+        let culprits = std::mem::take(&mut self.culprits);
+        let is_prop = |culprit: &&Culprit| matches!(culprit.owner, Owner::Prop(_));
+        let props_only = round == 0 && culprits.iter().any(|culprit| is_prop(&culprit));
+        for culprit in culprits.iter().filter(|culprit| !props_only || is_prop(culprit)) {
+            let (what, remedy) = match culprit.owner {
+                Owner::Prop(root) => {
+                    let what = Diverging::Prop(self.scene.props.handle(root));
+                    (what, self.remedy_prop(root, round))
+                }
+                Owner::Character(index, _) => {
+                    let what = Diverging::Character(self.scene.characters.handle(index));
+                    (what, self.remedy_character(index, round))
+                }
+                Owner::Ground | Owner::Fixture(_) => continue,
+            };
+            let told = self.divergences.iter_mut().find(|divergence| divergence.what == Some(what));
+            match told {
+                Some(divergence) => divergence.remedy = remedy,
+                None => {
+                    let Culprit { cause, excess, .. } = *culprit;
+                    self.divergences.push(Divergence { what: Some(what), cause, excess, remedy });
+                }
+            }
+        }
+        self.culprits = culprits;
+        self.culprits.clear();
+    }
+
+    fn remedy_prop(&mut self, root: usize, round: u32) -> Remedy {
+        let hangs = self.scene.props.at(root).hold.is_some();
+        let remedy = if hangs && round < 2 { Remedy::PutBack } else { Remedy::TakenOut };
+        for index in 0..self.scene.props.end() {
+            if self.scene.props.slot(index).is_none() || self.scene.root_of(index) != root {
+                continue;
+            }
+            if remedy == Remedy::TakenOut {
+                self.take_out_prop(index);
+            } else {
+                self.rest_prop(index);
+            }
+        }
+        remedy
+    }
+
+    fn remedy_character(&mut self, index: usize, round: u32) -> Remedy {
+        if round > 1 {
+            self.take_out_character(index);
+            return Remedy::TakenOut;
+        }
+        let Standing { place: [x, y, z], heading } = self.standing[index];
+        self.stand(index, [x, y, z], heading, 0.0);
+        Remedy::PutBack
+    }
+
+    /// Takes a prop out of the world until the next build: nothing touches it, and its handle is stale.
+    pub(super) fn take_out_prop(&mut self, index: usize) {
+        let body = self.places.prop(index).body;
+        self.forces.clear(body);
+        if let Some(slot) = self.scene.props.slot_mut(index) {
+            slot.present = false;
+        }
+        self.show_prop(index, false);
+        self.rest_prop(index);
+    }
+
+    /// Takes a character out of the world until the next build.
+    pub(super) fn take_out_character(&mut self, index: usize) {
+        for body in self.places.character(index).span.bodies.clone() {
+            self.forces.clear(body);
+        }
+        if let Some(slot) = self.scene.characters.slot_mut(index) {
+            slot.present = false;
+        }
+        self.show_character(index, false);
+        self.rest_character(index);
+    }
+
+    /// At rest: on its joint as it was joined, or aside.
+    pub(super) fn rest_prop(&mut self, index: usize) {
+        let span = &self.places.prop(index).span;
+        let qpos = &mut self.data.qpos_mut()[span.qpos.clone()];
+        qpos.fill(0.0);
+        match qpos.len() {
+            4 => qpos[0] = 1.0,
+            7 => {
+                qpos[..3].copy_from_slice(&ASIDE);
+                qpos[3] = 1.0;
+            }
+            _ => {}
+        }
+        self.data.qvel_mut()[span.dofs.clone()].fill(0.0);
+        self.data.qacc_warmstart_mut()[span.dofs.clone()].fill(0.0);
+    }
+
+    fn rest_character(&mut self, index: usize) {
+        let place = self.places.character(index);
+        let stand = self.scene.characters.at(index).stand();
+        place.layout.write_qpos(&stand.qpos, self.data.qpos_mut());
+        self.data.qpos_mut()[place.layout.root_qpos..][..3].copy_from_slice(&ASIDE);
+        self.data.qvel_mut()[place.span.dofs.clone()].fill(0.0);
+        self.data.qacc_warmstart_mut()[place.span.dofs.clone()].fill(0.0);
+        for (joint, &angle) in place.layout.joints.iter().zip(&stand.qpos[ROOT_QPOS..]) {
+            self.data.ctrl_mut()[joint.ctrl] = angle;
+        }
+    }
+
+    /// Keeps what was taken out where it is, against gravity.
+    pub(super) fn rest_absent(&mut self) {
+        for index in 0..self.scene.props.end() {
+            if self.scene.props.slot(index).is_some_and(|slot| !slot.present) {
+                self.rest_prop(index);
+            }
+        }
+        for index in 0..self.scene.characters.end() {
+            if self.scene.characters.slot(index).is_some_and(|slot| !slot.present) {
+                self.rest_character(index);
+            }
+        }
+    }
+
+    fn is_present(&self, owner: Owner) -> bool {
+        match owner {
+            Owner::Prop(index) => self.scene.props.slot(index).is_some_and(|slot| slot.present),
+            Owner::Character(index, _) => self.scene.characters.slot(index).is_some_and(|slot| slot.present),
+            Owner::Ground | Owner::Fixture(_) => false,
+        }
+    }
+
+    /// Clears MuJoCo's counters.
+    pub(super) fn clear_warnings(&mut self) {
+        self.data.warning_mut().iter_mut().for_each(|warning| warning.number = 0);
+    }
+}
