@@ -70,6 +70,11 @@ pub(super) struct Culprit {
     pub excess: Option<Excess>,
 }
 
+/// Not finite, or huge.
+fn is_bad(number: &f64) -> bool {
+    number.is_nan() || number.abs() > HUGE
+}
+
 impl World {
     /// Notes that something is wrong with a body, once for each character and each tree of props.
     fn accuse(&mut self, body: usize, cause: Cause, excess: Option<Excess>) {
@@ -85,7 +90,6 @@ impl World {
 
     /// Finds every tree with numbers that are not finite or huge, if MuJoCo has warned of any. True when there is one.
     pub(super) fn accuse_warned(&mut self) -> bool {
-        let is_bad = |number: &f64| number.is_nan() || number.abs() > HUGE;
         let quiet = self.data.warning().iter().all(|warning| warning.number == 0);
         if quiet && !self.data.qpos().iter().chain(self.data.qvel()).any(is_bad) {
             return false;
@@ -143,7 +147,10 @@ impl World {
         let culprits = std::mem::take(&mut self.culprits);
         let is_prop = |culprit: &&Culprit| matches!(culprit.owner, Owner::Prop(_));
         let props_only = round == 0 && culprits.iter().any(|culprit| is_prop(&culprit));
-        for culprit in culprits.iter().filter(|culprit| !props_only || is_prop(culprit)) {
+        for culprit in &culprits {
+            if props_only && !is_prop(&culprit) && !self.starts_bad(culprit.owner) {
+                continue;
+            }
             let (what, remedy) = match culprit.owner {
                 Owner::Prop(root) => {
                     let what = Diverging::Prop(self.scene.props.handle(root));
@@ -166,6 +173,14 @@ impl World {
         }
         self.culprits = culprits;
         self.culprits.clear();
+    }
+
+    /// True when a character has bad numbers already.
+    fn starts_bad(&self, owner: Owner) -> bool {
+        let Owner::Character(index, _) = owner else { return false };
+        let span = &self.places.character(index).span;
+        let numbers = self.data.qpos()[span.qpos.clone()].iter().chain(&self.data.qvel()[span.dofs.clone()]);
+        numbers.into_iter().any(is_bad)
     }
 
     fn remedy_prop(&mut self, root: usize, round: u32) -> Remedy {
