@@ -43,11 +43,11 @@ mod kinematics;
 mod ring;
 mod world;
 
-pub use character::{
-    Character, Contact, Diverged, HISTORY_SECS, ModelMismatch, ReplayFile,
-    ReplayFileError, Snapshot, SnapshotMismatch, StateHash,
-};
 pub use cause::{Cause, Excess};
+pub use character::{
+    Character, Contact, Diverged, HISTORY_SECS, ModelMismatch, ReplayFile, ReplayFileError, Snapshot,
+    SnapshotMismatch, StateHash,
+};
 pub use crowd::{Crowd, CrowdError};
 pub use description::body_poses::BodyPoses;
 pub use description::ground::HeightField;
@@ -56,21 +56,21 @@ pub use description::joint::{DAMPING_RANGE, Joint, ROPE_RANGE_M};
 pub use description::model::Model;
 pub use description::model_error::ModelError;
 pub use description::prop::{
-    FRICTION_RANGE, Fixture, FixtureShape, MASS_RANGE_KG, MAX_HEIGHTS, MAX_HULL_POINTS, MAX_TRIANGLES, Motion, Prop,
-    SIZE_RANGE_M, Solid, TRIANGLE_DEPTH_M,
+    FRICTION_RANGE, Fixture, FixtureShape, MASS_RANGE_KG, MAX_HEIGHTS, MAX_HULL_POINTS, MAX_TRIANGLES,
+    Motion, Prop, SIZE_RANGE_M, Solid, TRIANGLE_DEPTH_M,
 };
 pub use description::settings::Settings;
 pub use description::shape::{Shape, ShapeKind};
 pub use description::terrain::Terrain;
 pub use description::world_error::WorldError;
-pub use ring::NotRecorded;
-pub use world::{
-    CharacterHandle, Divergence, Diverging, FixtureHandle, Grab, GrabHandle, Handle, JointHandle, LayoutMismatch,
-    MAX_GRABS, Movable, Part, PropHandle, RayHit, Remedy, StageTimes, World, WorldContact, WorldEdit, WorldSnapshot,
-    measure_stages,
-};
 /// What policy-core says of every physics of a character.
 pub use policy_core::contract::{
     CONTROL_HZ, MAX_DEPTH_M, MAX_DISTANCE_M, MAX_PUSHED_MPS, MAX_SPEED_MPS, MAX_SPIN_RADPS, Pose, PoseError,
     PushError, WALKING_START_MPS,
+};
+pub use ring::NotRecorded;
+pub use world::{
+    CharacterHandle, Divergence, Diverging, FixtureHandle, Grab, GrabHandle, Handle, JointHandle,
+    LayoutMismatch, MAX_GRABS, Movable, Part, PropHandle, RayHit, Remedy, StageTimes, World, WorldContact,
+    WorldEdit, WorldSnapshot, measure_stages,
 };

@@ -55,9 +55,7 @@ use crate::ring::Ring;
 pub use self::contact::{Part, WorldContact};
 pub use self::edit::WorldEdit;
 pub use self::forces::{Grab, MAX_GRABS, Movable};
-pub use self::handle::{
-    CharacterHandle, FixtureHandle, GrabHandle, Handle, JointHandle, PropHandle,
-};
+pub use self::handle::{CharacterHandle, FixtureHandle, GrabHandle, Handle, JointHandle, PropHandle};
 pub use self::ray::RayHit;
 pub use self::recover::{Divergence, Diverging, Remedy};
 pub use self::snapshot::{LayoutMismatch, WorldSnapshot};

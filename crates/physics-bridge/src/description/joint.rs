@@ -55,8 +55,7 @@ pub enum Joint {
 impl Joint {
     pub(crate) fn check(&self) -> Result<(), WorldError> {
         const WHAT: &str = "a joint";
-        let point =
-            |field, point: Vec3| within(WHAT, field, point.length(), [0.0, MAX_DISTANCE_M]);
+        let point = |field, point: Vec3| within(WHAT, field, point.length(), [0.0, MAX_DISTANCE_M]);
         let limits = |range: Option<[f32; 2]>, most: f32| {
             range.map_or(Ok(()), |[low, high]| {
                 within(WHAT, "range[0]", low, [-most, most])?;

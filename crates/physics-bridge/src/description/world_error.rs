@@ -72,12 +72,19 @@ pub enum WorldError {
         most: usize,
     },
     /// A character runs at another rate than the world.
-    #[error("expected a character of {expected}, found {found}")]
+    #[error(
+        "expected a character of {control_hz} ticks a second that bears steps of {timestep_secs} s, found one of \
+         {found_control_hz} and {found_timestep_secs} s: make the world of the model with the shortest steps"
+    )]
     Rate {
-        /// The world's control and physics rate.
-        expected: String,
-        /// The character's.
-        found: String,
+        /// The world's control ticks per second.
+        control_hz: f32,
+        /// The world's physics step, seconds.
+        timestep_secs: f64,
+        /// The character's control ticks per second.
+        found_control_hz: f32,
+        /// The character's physics step, seconds.
+        found_timestep_secs: f64,
     },
     /// A character's geoms use too many contact bits.
     #[error("expected contype and conaffinity to use at most {most} bits, found {found}")]
@@ -88,7 +95,9 @@ pub enum WorldError {
         found: u32,
     },
     /// A joint would make a prop hold itself.
-    #[error("expected a prop that is free or holds the other one by no joint, found a joint that closes a loop")]
+    #[error(
+        "expected a prop that is free or holds the other one by no joint, found a joint that closes a loop"
+    )]
     Loop,
     /// A prop on a joint can't be placed.
     #[error("expected a prop without a joint, found one that hangs on a joint")]

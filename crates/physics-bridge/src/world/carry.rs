@@ -92,7 +92,8 @@ impl World {
 
     fn carry_character(&mut self, old: &World, index: usize) {
         let Some(slot) = self.scene.characters.slot(index) else { return };
-        let same = old.scene.characters.slot(index).is_some_and(|before| before.generation == slot.generation);
+        let same =
+            old.scene.characters.slot(index).is_some_and(|before| before.generation == slot.generation);
         if !same {
             return;
         }

@@ -15,6 +15,9 @@ use crate::description::world_error::WorldError;
 /// Most characters in a world.
 const MOST_CHARACTERS: usize = 1024;
 
+/// How much longer the steps of a world may be than those of a character, seconds.
+const TIMESTEP_TOLERANCE_SECS: f64 = 1e-6;
+
 /// Most props and fixtures in a world, of each.
 const MOST_THINGS: usize = 4096;
 
@@ -69,7 +72,7 @@ impl WorldEdit<'_> {
     /// The settings of its model for strength and mass apply; those for gravity and friction are the world's.
     ///
     /// # Errors
-    /// When it runs at another rate than the world, or a number is out of its range.
+    /// When it has another control rate than the world or was made for shorter steps, or a number is out of its range.
     pub fn add_character(
         &mut self,
         model: &Model,
@@ -79,12 +82,16 @@ impl WorldEdit<'_> {
         speed_mps: f32,
     ) -> Result<CharacterHandle, WorldError> {
         check_stand(x, y, heading, speed_mps)?;
-        let rate = |model: &Model| {
-            format!("{} ticks a second, {} s a step", model.control_hz(), model.timestep_secs())
-        };
-        let (expected, found) = (rate(&self.world.ground), rate(model));
-        if expected != found {
-            return Err(WorldError::Rate { expected, found });
+        let ground = &self.world.ground;
+        let fits = model.control_hz() == ground.control_hz()
+            && model.timestep_secs() > ground.timestep_secs() - TIMESTEP_TOLERANCE_SECS;
+        if !fits {
+            return Err(WorldError::Rate {
+                control_hz: ground.control_hz(),
+                timestep_secs: ground.timestep_secs(),
+                found_control_hz: model.control_hz(),
+                found_timestep_secs: model.timestep_secs(),
+            });
         }
         self.at_most("characters", self.scene.characters.iter().count(), MOST_CHARACTERS)?;
         let generation = self.scene.generation();
@@ -181,9 +188,7 @@ impl WorldEdit<'_> {
                     return Err(WorldError::Loop);
                 }
                 (true, _) => JointRecord::Hold { prop: a },
-                (false, Some(b)) if is_free(b) && self.scene.root_of(a) != b => {
-                    JointRecord::Hold { prop: b }
-                }
+                (false, Some(b)) if is_free(b) && self.scene.root_of(a) != b => JointRecord::Hold { prop: b },
                 _ => return Err(WorldError::Loop),
             }
         };

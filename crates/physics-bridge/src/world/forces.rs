@@ -71,11 +71,7 @@ struct Push {
 impl Forces {
     /// No force on any of so many bodies. Allocates.
     pub(super) fn new(bodies: usize) -> Self {
-        Self {
-            pushes: vec![Push::default(); bodies].into(),
-            grabs: [None; MAX_GRABS],
-            under_way: false,
-        }
+        Self { pushes: vec![Push::default(); bodies].into(), grabs: [None; MAX_GRABS], under_way: false }
     }
 
     /// Overwrites this with the forces on as many bodies. Does not allocate.

@@ -18,6 +18,12 @@ const ASIDE: [f64; 3] = [0.0, 0.0, -5000.0];
 /// Numbers beyond this, MuJoCo calls bad.
 const HUGE: f64 = 1e10;
 
+/// Rounds in which what may be a mere consequence waits.
+const PATIENT_ROUNDS: u32 = 3;
+
+/// What exceeds a limit by this share of the worst, or less, may be a mere consequence.
+const CONSEQUENCE: f32 = 0.1;
+
 /// Something that diverged, and what was done about it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
@@ -73,6 +79,13 @@ pub(super) struct Culprit {
 /// Not finite, or huge.
 fn is_bad(number: &f64) -> bool {
     number.is_nan() || number.abs() > HUGE
+}
+
+impl Culprit {
+    /// How many times the limit; without bound for what has no limit.
+    fn severity(&self) -> f32 {
+        self.excess.map_or(f32::MAX, |excess| excess.value / excess.limit)
+    }
 }
 
 impl World {
@@ -142,13 +155,17 @@ impl World {
         !self.culprits.is_empty()
     }
 
-    /// Deals with what was found wrong. In the first `round` props go before characters, who may just have met one.
+    /// Deals with what was found wrong. In the first rounds props go before characters, and what is far beyond a limit
+    /// before what is just beyond one: the others may just have met it.
     pub(super) fn remedy(&mut self, round: u32) {
         let culprits = std::mem::take(&mut self.culprits);
-        let is_prop = |culprit: &&Culprit| matches!(culprit.owner, Owner::Prop(_));
-        let props_only = round == 0 && culprits.iter().any(|culprit| is_prop(&culprit));
+        let is_prop = |culprit: &Culprit| matches!(culprit.owner, Owner::Prop(_));
+        let any_prop = culprits.iter().any(is_prop);
+        let worst = culprits.iter().map(Culprit::severity).fold(0.0, f32::max);
         for culprit in &culprits {
-            if props_only && !is_prop(&culprit) && !self.starts_bad(culprit.owner) {
+            let waits = round < PATIENT_ROUNDS
+                && (any_prop && !is_prop(culprit) || culprit.severity() < CONSEQUENCE * worst);
+            if waits && !self.starts_bad(culprit.owner) {
                 continue;
             }
             let (what, remedy) = match culprit.owner {
@@ -185,7 +202,7 @@ impl World {
 
     fn remedy_prop(&mut self, root: usize, round: u32) -> Remedy {
         let hangs = self.scene.props.at(root).hold.is_some();
-        let remedy = if hangs && round < 2 { Remedy::PutBack } else { Remedy::TakenOut };
+        let remedy = if hangs && round <= PATIENT_ROUNDS { Remedy::PutBack } else { Remedy::TakenOut };
         for index in 0..self.scene.props.end() {
             if self.scene.props.slot(index).is_none() || self.scene.root_of(index) != root {
                 continue;
@@ -200,7 +217,7 @@ impl World {
     }
 
     fn remedy_character(&mut self, index: usize, round: u32) -> Remedy {
-        if round > 1 {
+        if round > PATIENT_ROUNDS {
             self.take_out_character(index);
             return Remedy::TakenOut;
         }

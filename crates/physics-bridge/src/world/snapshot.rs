@@ -27,7 +27,9 @@ type Presence = (u32, bool);
 
 /// The world was built with other things in it.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
-#[error("expected a snapshot of the layout {expected:016x}, found one of {found:016x}: things were added since")]
+#[error(
+    "expected a snapshot of the layout {expected:016x}, found one of {found:016x}: things were added since"
+)]
 #[non_exhaustive]
 pub struct LayoutMismatch {
     /// The layout of the world.

@@ -60,9 +60,10 @@ fn add_prop(parent: &mut MjsBody, scene: &Scene, index: usize) {
     geom.set_mass(prop.mass_kg.into());
     touch(geom, prop.friction);
     bounce(geom, prop);
-    let children = scene.props.iter().filter(|(_, slot)| {
-        slot.value.hold.as_ref().is_some_and(|hold| hold.parent == Some(index))
-    });
+    let children = scene
+        .props
+        .iter()
+        .filter(|(_, slot)| slot.value.hold.as_ref().is_some_and(|hold| hold.parent == Some(index)));
     children.for_each(|(child, _)| add_prop(body, scene, child));
 }
 
@@ -180,9 +181,7 @@ fn shape(geom: &mut MjsGeom, solid: &Solid, mesh: &str) {
         Solid::Cylinder { radius, half_length } => {
             (MjtGeomBase::mjGEOM_CYLINDER, round(*radius, *half_length))
         }
-        Solid::Cuboid { half_extents } => {
-            (MjtGeomBase::mjGEOM_BOX, half_extents.as_dvec3().to_array())
-        }
+        Solid::Cuboid { half_extents } => (MjtGeomBase::mjGEOM_BOX, half_extents.as_dvec3().to_array()),
         Solid::Hull { .. } => {
             geom.set_meshname(mesh);
             (MjtGeomBase::mjGEOM_MESH, [0.0; 3])

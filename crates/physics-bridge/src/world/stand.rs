@@ -1,8 +1,8 @@
 //! Placing characters and props while the world runs, and reading where they are.
 
 use glam::{DQuat, DVec3, Quat, Vec3};
-use policy_core::contract::{MAX_DISTANCE_M, MAX_SPEED_MPS, Pose, ROOT_QPOS};
 use policy_core::Heading;
+use policy_core::contract::{MAX_DISTANCE_M, MAX_SPEED_MPS, Pose, ROOT_QPOS};
 
 use super::World;
 use super::forces::reference;

@@ -14,7 +14,7 @@ use super::recover::Standing;
 use crate::description::body_poses::rotation;
 
 /// How often a tick is begun anew before it is left out.
-const ROUNDS: u32 = 8;
+const ROUNDS: u32 = 12;
 
 /// Time that a world spent in the stages of MuJoCo, seconds since it was built. All zero unless
 /// [`measure_stages`](crate::measure_stages) was called before.
@@ -65,6 +65,7 @@ impl World {
         for round in 0..ROUNDS {
             if round > 0 {
                 self.return_to_start();
+                self.find_first_culprits();
                 self.remedy(round - 1);
                 self.data.step1();
             } else if std::mem::take(&mut self.is_touched) && self.accuse_implausible() {
@@ -72,7 +73,7 @@ impl World {
                 self.data.step1();
             }
             self.note_start();
-            if self.run_substeps() {
+            if self.run_substeps(false) {
                 self.tick += 1;
                 break;
             }
@@ -87,8 +88,23 @@ impl World {
         self.divergences.len()
     }
 
-    /// The substeps of a tick. False when something diverged; the culprits are then known.
-    fn run_substeps(&mut self) -> bool {
+    /// Of several culprits, most may just have met the first. Repeats the tick, which is at its start, to find it, and
+    /// returns to the start.
+    fn find_first_culprits(&mut self) {
+        if self.culprits.len() < 2 {
+            return;
+        }
+        self.culprits.clear();
+        if !self.accuse_warned() {
+            self.data.step1();
+            self.run_substeps(true);
+            self.return_to_start();
+        }
+    }
+
+    /// The substeps of a tick. False when something diverged; the culprits are then known. Motion beyond the limits is
+    /// looked for at the end of the tick, or also after every substep.
+    fn run_substeps(&mut self, every_substep: bool) -> bool {
         let substeps = self.ground.substeps();
         for substep in 0..substeps {
             self.forces.apply(&mut self.data);
@@ -107,8 +123,11 @@ impl World {
             if self.accuse_warned() {
                 return false;
             }
+            if (every_substep || substep + 1 == substeps) && self.accuse_implausible() {
+                return false;
+            }
         }
-        !self.accuse_implausible()
+        true
     }
 
     /// Notes the state at the start of the tick.
@@ -144,8 +163,7 @@ impl World {
         for (index, _) in self.scene.characters.present() {
             let root = self.places.character(index).layout.body_ids[0];
             let place = self.data.xpos()[root].map(|number| number as f32);
-            self.ground_heights[index] =
-                height_below(&mut self.data, &self.places, &self.ground, place);
+            self.ground_heights[index] = height_below(&mut self.data, &self.places, &self.ground, place);
         }
     }
 

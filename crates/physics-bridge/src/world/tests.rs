@@ -142,8 +142,13 @@ fn a_character_stands_up_where_it_was() {
         let near = fair.near;
         let dofs = fair.world.places.character(near.index()).span.dofs.clone();
         fair.world.data.qvel_mut()[dofs.start + 10] = value;
-        let causes =
-            [Cause::BadPosition, Cause::BadVelocity, Cause::BadAcceleration, Cause::SpinsTooFast, Cause::TooFast];
+        let causes = [
+            Cause::BadPosition,
+            Cause::BadVelocity,
+            Cause::BadAcceleration,
+            Cause::SpinsTooFast,
+            Cause::TooFast,
+        ];
         fair.diverges(Diverging::Character(near), &causes, Remedy::PutBack);
         assert!(fair.root_height(near) > 0.5);
     }

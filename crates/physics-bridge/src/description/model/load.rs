@@ -148,8 +148,18 @@ impl Model {
             .map_err(|error| ModelError::Stand { error })?;
         let physics = Arc::clone(&base);
         let stand_lift = stand_lift(&base, &layout, &stand, &shapes, &shape_geoms);
-        let shared =
-            Shared { source, skeleton, base, layout, ground, shapes, shape_geoms, substeps, stand, stand_lift };
+        let shared = Shared {
+            source,
+            skeleton,
+            base,
+            layout,
+            ground,
+            shapes,
+            shape_geoms,
+            substeps,
+            stand,
+            stand_lift,
+        };
         Ok(Self { shared: Arc::new(shared), physics, settings: Settings::default() })
     }
 }
