@@ -3,6 +3,7 @@
 
 pub(crate) mod body_poses;
 pub(crate) mod file;
+pub(crate) mod fixture;
 pub(crate) mod ground;
 pub(crate) mod ground_kind;
 pub(crate) mod joint;

@@ -1,8 +1,9 @@
-//! Characters of policy-core in MuJoCo: sense, actuate, step, save and restore, one or many.
+//! Characters of policy-core in MuJoCo: sense, actuate, step, save and restore; alone, in a shared world, or in crowds.
 //!
 //! A [`Model`] is an immutable description: body, ground, skeleton. Any number of characters share it. A
-//! [`Character`] is the mutable state of one body. A [`Crowd`] steps many of them on all cores. The modules are
-//! layered in this order and import downwards only.
+//! [`Character`] is the mutable state of one body alone. A [`World`] holds many characters, props and fixtures that
+//! touch each other. A [`Crowd`] steps many characters apart on all cores. The modules are on three floors that import
+//! downwards only: descriptions, one simulation, many simulations.
 //!
 //! ```
 //! # fn main() -> Result<(), Box<dyn std::error::Error>> {
@@ -50,14 +51,14 @@ pub use character::{
 };
 pub use crowd::{Crowd, CrowdError};
 pub use description::body_poses::BodyPoses;
+pub use description::fixture::{Fixture, FixtureShape, MAX_HEIGHTS, MAX_TRIANGLES, TRIANGLE_DEPTH_M};
 pub use description::ground::HeightField;
 pub use description::ground_kind::GroundKind;
 pub use description::joint::{DAMPING_RANGE, Joint, ROPE_RANGE_M};
 pub use description::model::Model;
 pub use description::model_error::ModelError;
 pub use description::prop::{
-    FRICTION_RANGE, Fixture, FixtureShape, MASS_RANGE_KG, MAX_HEIGHTS, MAX_HULL_POINTS, MAX_TRIANGLES,
-    Motion, Prop, SIZE_RANGE_M, Solid, TRIANGLE_DEPTH_M,
+    FRICTION_RANGE, MASS_RANGE_KG, MAX_HULL_POINTS, Motion, Prop, SIZE_RANGE_M, Solid,
 };
 pub use description::settings::Settings;
 pub use description::shape::{Shape, ShapeKind};

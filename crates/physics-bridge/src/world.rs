@@ -21,6 +21,7 @@
 //! edit that adds something builds the simulation anew, which takes milliseconds and grows with the world, so many
 //! things are best added in one edit. Props that were reserved, or removed since the last build, come back for nothing.
 
+mod accuse;
 mod build;
 mod carry;
 mod contact;
@@ -44,9 +45,10 @@ use mujoco_rs::wrappers::mj_data::MjData;
 use mujoco_rs::wrappers::mj_model::MjModel;
 use policy_core::CharacterState;
 
+use self::accuse::Culprit;
 use self::forces::Forces;
 use self::places::Places;
-use self::recover::{Culprit, Standing};
+use self::recover::Standing;
 use self::scene::Scene;
 use crate::description::model::Model;
 use crate::description::world_error::WorldError;

@@ -1,5 +1,7 @@
 //! What holds two props together, or a prop to the world.
 
+use std::f32::consts::TAU;
+
 use glam::Vec3;
 use policy_core::contract::MAX_DISTANCE_M;
 
@@ -22,7 +24,7 @@ pub enum Joint {
         anchor: Vec3,
         /// Direction of the axis, not zero.
         axis: Vec3,
-        /// Least and greatest angle from where it is now, radians, in [-6.28, 6.28]; `None` turns freely.
+        /// Least and greatest angle from where it is now, radians, in [-2 pi, 2 pi]; `None` turns freely.
         range: Option<[f32; 2]>,
         /// In [`DAMPING_RANGE`].
         damping: f32,
@@ -66,7 +68,7 @@ impl Joint {
             Joint::Hinge { anchor, axis, range, damping } => {
                 point("anchor", anchor)?;
                 within(WHAT, "length of the axis", axis.length(), [1e-3, 1e3])?;
-                limits(range, 6.28)?;
+                limits(range, TAU)?;
                 within(WHAT, "damping", damping, DAMPING_RANGE)
             }
             Joint::Slide { axis, range, damping } => {

@@ -15,6 +15,7 @@ use mujoco_rs::wrappers::mj_model::{MjModel, MjtDisableBit, MjtGeomBase, MjtJaco
 use super::places::{Places, character_prefix};
 use super::scene::Scene;
 use super::solids;
+use crate::description::layout::Layout;
 use crate::description::mjcf::{self, FLOOR};
 use crate::description::model::Model;
 use crate::description::model_error::ModelError;
@@ -59,7 +60,7 @@ pub(super) fn build(ground: &Model, scene: &Scene) -> Result<Built, WorldError> 
     solids::add(&mut spec, scene);
     let compile = |error: &dyn std::error::Error| WorldError::Compile { message: error.to_string() };
     let mut physics = Box::new(spec.compile().map_err(|error| compile(&error))?);
-    apply_strength(&mut physics, ground, scene)?;
+    apply_strength(&mut physics, scene)?;
     let places = Places::of(&physics, scene)?;
     Ok(Built { physics, places })
 }
@@ -157,24 +158,19 @@ fn code(index: usize) -> i32 {
         // The next greater number with as many bits set.
         let lowest = code & code.wrapping_neg();
         let ripple = code + lowest;
-        code = ripple | ((code ^ ripple) >> 2) / lowest;
+        code = ripple | (((code ^ ripple) >> 2) / lowest);
     }
     code as i32
 }
 
-/// Applies the strength and mass that the settings of each character's model give it.
-fn apply_strength(physics: &mut MjModel, ground: &Model, scene: &Scene) -> Result<(), WorldError> {
-    let _ = ground;
+/// Applies the strength that the settings of each character's model give it.
+fn apply_strength(physics: &mut MjModel, scene: &Scene) -> Result<(), WorldError> {
     for (index, slot) in scene.characters.iter() {
         let strength = f64::from(slot.value.settings().strength);
         if strength == 1.0 {
             continue;
         }
-        let layout = crate::description::layout::Layout::attached(
-            physics,
-            slot.value.skeleton(),
-            &character_prefix(index),
-        )?;
+        let layout = Layout::attached(physics, slot.value.skeleton(), &character_prefix(index))?;
         layout.scale_strength(physics, strength);
     }
     Ok(())

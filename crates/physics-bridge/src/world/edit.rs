@@ -7,9 +7,10 @@ use super::World;
 use super::handle::{CharacterHandle, FixtureHandle, JointHandle, PropHandle};
 use super::scene::{JointRecord, PropRecord, Rope, Scene};
 use super::stand::check_stand;
+use crate::description::fixture::Fixture;
 use crate::description::joint::Joint;
 use crate::description::model::Model;
-use crate::description::prop::{Fixture, Motion, Prop};
+use crate::description::prop::{Motion, Prop};
 use crate::description::world_error::WorldError;
 
 /// Most characters in a world.
@@ -69,7 +70,7 @@ impl WorldEdit<'_> {
     /// Adds a character that stands on the ground at a point, metres, world space, on the highest fixture there,
     /// facing along `heading`. All of it moves along `heading` at `speed_mps`: 0 for a policy that stands.
     ///
-    /// The settings of its model for strength and mass apply; those for gravity and friction are the world's.
+    /// The setting of its model for strength applies; gravity and friction are the world's, mass is that of the MJCF.
     ///
     /// # Errors
     /// When it has another control rate than the world or was made for shorter steps, or a number is out of its range.

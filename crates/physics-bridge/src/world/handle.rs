@@ -3,9 +3,10 @@
 use std::hash::{Hash, Hasher};
 use std::marker::PhantomData;
 
+use crate::description::fixture::Fixture;
 use crate::description::joint::Joint;
 use crate::description::model::Model;
-use crate::description::prop::{Fixture, Prop};
+use crate::description::prop::Prop;
 use crate::description::world_error::WorldError;
 
 /// Names one thing in a [`World`](crate::World). `K` is what it was made of.

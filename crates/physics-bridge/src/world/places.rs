@@ -184,7 +184,7 @@ fn circle(model: &MjModel, body: usize, geoms: &Range<usize>) -> ([f64; 2], f64)
 fn hash(model: &MjModel) -> u64 {
     let mut hash = StateHash::default();
     for size in [model.nq(), model.nv(), model.nu(), model.nbody(), model.ngeom(), model.ntendon()] {
-        hash.absorb_bits(i64::from(size) as u64);
+        hash.absorb_bits(size as u64);
     }
     let numbers = (model.body_mass().iter().copied())
         .chain(model.body_inertia().iter().flatten().copied())

@@ -6,9 +6,11 @@ use policy_core::contract::{MAX_DISTANCE_M, MAX_SPEED_MPS, Pose, ROOT_QPOS};
 
 use super::World;
 use super::forces::reference;
-use super::handle::{CharacterHandle, PropHandle};
+use super::handle::{CharacterHandle, FixtureHandle, JointHandle, PropHandle};
 use super::recover::Standing;
+use super::scene::JointRecord;
 use super::solids::{quat, vec3, wxyz};
+use crate::description::fixture::Fixture;
 use crate::description::prop::{Motion, Prop};
 use crate::description::world_error::{WorldError, within};
 use crate::kinematics::velocity_at;
@@ -35,6 +37,30 @@ impl World {
             velocity: velocity.as_vec3(),
             spin: spin.as_vec3(),
         })
+    }
+
+    /// What a fixture was made of.
+    ///
+    /// # Errors
+    /// When the handle is stale.
+    pub fn fixture(&self, fixture: FixtureHandle) -> Result<&Fixture, WorldError> {
+        Ok(self.scene.fixtures.at(self.scene.fixtures.index_of(fixture)?))
+    }
+
+    /// The two ends of a rope, metres, world space; `None` for another joint.
+    ///
+    /// # Errors
+    /// When the handle is stale.
+    pub fn rope_ends(&self, joint: JointHandle) -> Result<Option<[Vec3; 2]>, WorldError> {
+        let JointRecord::Rope(rope) = self.scene.joints.at(self.scene.joints.index_of(joint)?) else {
+            return Ok(None);
+        };
+        let end = |prop: Option<usize>, point: DVec3| {
+            let world = (DVec3::ZERO, DQuat::IDENTITY);
+            let (at, turned) = prop.map_or(world, |prop| self.exact_motion(self.places.prop(prop).body).0);
+            (at + turned * point).as_vec3()
+        };
+        Ok(Some([0, 1].map(|i| end(rope.props[i], rope.points[i]))))
     }
 
     /// Pose of a body's frame; its angular and linear velocity.
