@@ -1,15 +1,21 @@
 //! A small disk of this process's own, filled to its last page, and made read-only half-way. Needs a mount namespace.
+//! Where there is none, a folder is forbidden by its mode; writes that end too early are then those of the write limits.
 
-use std::fs::File;
+use std::fs::{File, Permissions};
 use std::io::Write as _;
+use std::os::unix::fs::PermissionsExt as _;
 use std::path::Path;
 use std::process::Command;
 
 use crate::writers::{Writer, let_go};
 use crate::{unfinished, whole};
 
-/// Said at the end.
+/// Said at the ends.
 pub const DONE: &str = "disk filled and forbidden";
+pub const FORBIDDEN: &str = "folder forbidden";
+
+/// Said when nothing holds this process back from writing, as it is for root.
+pub const NOT_HELD_BACK: &str = "writes into a folder of mode 555 succeed";
 
 /// Sizes of the disk and of its pages, bytes.
 const DISK: u64 = 4 << 20;
@@ -20,7 +26,7 @@ const MOST_FREE: u64 = 64;
 
 fn mount(options: &str, folder: &Path) {
     let output = Command::new("mount").args(["-t", "tmpfs", "-o", options, "none"]).arg(folder).output();
-    let output = output.expect("NOT CHECKED: there is no `mount`");
+    let output = output.expect("`mount` is part of util-linux");
     if !output.status.success() {
         // No panic: whoever runs this without the right to mount is told, and that is all.
         println!("cannot mount: {}", String::from_utf8_lossy(&output.stderr));
@@ -57,6 +63,37 @@ pub fn fill_and_forbid(writer: &Writer, folder: &Path) {
     assert_eq!(whole(writer, folder, "a folder that can be written again"), Some(version + 1));
     let_go();
     println!("{}: {DONE}: {failed} writes failed, {done} did not", writer.name);
+}
+
+/// A folder made read-only half-way, by its mode.
+pub fn forbid(writer: &Writer, folder: &Path) {
+    (writer.write)(folder, 1).expect("the folder can be written");
+    let_go();
+    set_modes(folder, 0o555);
+    let probe = folder.join("probe");
+    if File::create(&probe).is_ok() {
+        std::fs::remove_file(probe).unwrap();
+        set_modes(folder, 0o755);
+        println!("{NOT_HELD_BACK}");
+        std::process::exit(3);
+    }
+    (writer.write)(folder, 2).expect_err("the folder is read-only");
+    assert_eq!(whole(writer, folder, "a read-only folder"), Some(1));
+    set_modes(folder, 0o755);
+    (writer.write)(folder, 2).expect("it can be written again");
+    assert_eq!(whole(writer, folder, "a folder that can be written again"), Some(2));
+    let_go();
+    println!("{}: {FORBIDDEN}", writer.name);
+}
+
+/// Sets the modes of a folder and of those in it.
+fn set_modes(folder: &Path, mode: u32) {
+    for entry in std::fs::read_dir(folder).unwrap().map(Result::unwrap) {
+        if entry.path().is_dir() {
+            set_modes(&entry.path(), mode);
+        }
+    }
+    std::fs::set_permissions(folder, Permissions::from_mode(mode)).unwrap();
 }
 
 /// Fills the disk but for some pages.

@@ -37,7 +37,11 @@ pub const PARENT_DISCRIMINATOR: &str = "parent_discriminator";
 pub const CRITIC: &str = "critic";
 
 /// Largest checkpoint, bytes.
-pub const MOST_BYTES: u64 = 1 << 30;
+pub const MOST_BYTES: u64 = 240 << 20;
+
+/// Most parameters of all networks of a checkpoint. With their moments, and the file beside them, reading takes less than
+/// 500 MB.
+pub const MOST_PARAMETERS: usize = 20_000_000;
 
 /// Why a checkpoint can't be used.
 #[derive(Debug, thiserror::Error)]
@@ -175,8 +179,12 @@ impl Checkpoint {
     /// The bytes of a file.
     ///
     /// # Errors
-    /// When a name or a size does not fit into the format.
+    /// When a name or a size does not fit into the format, or the networks have more than [`MOST_PARAMETERS`].
     pub fn to_bytes(&self) -> std::io::Result<Vec<u8>> {
+        let parameters = self.networks.values().map(|t| t.network.parameters.len()).sum();
+        if parameters > MOST_PARAMETERS {
+            return Err(std::io::Error::other(too_many(parameters)));
+        }
         let parts = |role: &String, t: &Trained| {
             let all =
                 [("parameters", &t.network.parameters), ("mean", &t.adam.mean), ("square", &t.adam.square)];
@@ -234,6 +242,10 @@ impl Checkpoint {
             found: "none".into(),
         })
     }
+}
+
+fn too_many(parameters: usize) -> String {
+    format!("expected at most {MOST_PARAMETERS} parameters in all networks, found {parameters}")
 }
 
 #[cfg(test)]

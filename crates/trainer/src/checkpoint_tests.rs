@@ -146,3 +146,23 @@ fn a_header_that_would_fill_the_memory_is_refused_unread() {
     let error = Checkpoint::from_bytes(path, &file).unwrap_err().to_string();
     assert!(error.contains("a header of at most"), "{error}");
 }
+
+#[test]
+fn networks_that_would_fill_the_memory_are_neither_written_nor_read() {
+    let side = 1 + MOST_PARAMETERS / 10_001;
+    let network = Network::zeros(&[10_000, side]);
+    let adam = Adam { mean: Vec::new(), square: Vec::new(), steps: 0 };
+    let found = network.parameters.len().to_string();
+    let networks = [(ACTOR.to_owned(), Trained { network, adam })].into_iter().collect();
+    let checkpoint = Checkpoint::new(networks, (1, 0, 0.0), 1e-4, Rng::new(1, 1));
+    let error = checkpoint.to_bytes().unwrap_err().to_string();
+    assert!(error.contains("expected at most 20000000 parameters") && error.contains(&found), "{error}");
+
+    // The sizes alone are enough: no tensor is looked at.
+    let progress = serde_json::to_string(&checkpoint.progress).unwrap();
+    let meta = [("progress".to_owned(), progress)].into_iter().collect();
+    let none: [(&str, TensorView<'_>); 0] = [];
+    let file = safetensors::serialize(none, Some(meta)).unwrap();
+    let error = Checkpoint::from_bytes(Path::new("a.safetensors"), &file).unwrap_err().to_string();
+    assert!(error.contains("expected at most 20000000 parameters") && error.contains(&found), "{error}");
+}

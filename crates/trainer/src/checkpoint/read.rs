@@ -6,7 +6,7 @@ use files::quoted;
 use safetensors::tensor::SafeTensors;
 
 use super::numbers::floats;
-use super::{Checkpoint, EMA, FORMAT, Progress, Trained};
+use super::{Checkpoint, EMA, FORMAT, MOST_PARAMETERS, Progress, Trained};
 use crate::nn::{Adam, Network};
 
 /// [`EMA`] in version 1.
@@ -54,6 +54,7 @@ pub(super) fn read(data: &[u8]) -> Result<Checkpoint, Wrong> {
     if progress.sizes.len() > MOST_NETWORKS {
         return Err(wrong(format!("at most {MOST_NETWORKS} networks"), progress.sizes.len().to_string()));
     }
+    check_sizes(&progress)?;
     let tensors = SafeTensors::deserialize(data).map_err(not_safe)?;
     let mut networks = HashMap::new();
     for (role, (sizes, steps)) in &progress.sizes {
@@ -62,6 +63,26 @@ pub(super) fn read(data: &[u8]) -> Result<Checkpoint, Wrong> {
     }
     let p = &progress;
     Ok(Checkpoint::new(networks, (p.seed, p.samples, p.secs), p.learning_rate, p.rng))
+}
+
+/// Refuses networks that are no networks, and more of them than a checkpoint may have.
+fn check_sizes(progress: &Progress) -> Result<(), Wrong> {
+    let mut parameters = 0;
+    for (role, (sizes, _)) in &progress.sizes {
+        let layers = 2..=MOST_LAYERS;
+        if !layers.contains(&sizes.len()) || sizes.iter().any(|s| *s == 0 || *s > MOST_UNITS) {
+            let expected = format!("2 to {MOST_LAYERS} sizes of 1 to {MOST_UNITS} for {role}");
+            let found = format!("{} sizes, the largest {:?}", sizes.len(), sizes.iter().max());
+            return Err(wrong(expected, found));
+        }
+        // At most 256 networks with 15 layers of 2^28 parameters: no overflow.
+        parameters += Network::parameter_count(sizes);
+    }
+    if parameters > MOST_PARAMETERS {
+        let expected = format!("at most {MOST_PARAMETERS} parameters in all networks");
+        return Err(wrong(expected, parameters.to_string()));
+    }
+    Ok(())
 }
 
 /// Today's name of a role.
@@ -79,12 +100,6 @@ fn read_network(
     tensors: &SafeTensors<'_>,
     checksums: &HashMap<String, u32>,
 ) -> Result<Trained, Wrong> {
-    let layers = 2..=MOST_LAYERS;
-    if !layers.contains(&sizes.len()) || sizes.iter().any(|s| *s == 0 || *s > MOST_UNITS) {
-        let expected = format!("2 to {MOST_LAYERS} sizes of 1 to {MOST_UNITS} for {role}");
-        return Err(wrong(expected, format!("{} sizes, the largest {:?}", sizes.len(), sizes.iter().max())));
-    }
-    // At most 15 layers of 2^28 parameters: no overflow.
     let count = Network::parameter_count(sizes);
     let read = |part: &str| {
         let name = format!("{role}.{part}");
@@ -95,9 +110,8 @@ fn read_network(
         let expected = format!("{count} finite numbers in {name}");
         floats(&view, count).ok_or_else(|| wrong(expected, format!("shape {:?}", view.shape())))
     };
-    let parameters = read("parameters")?;
     let mut network = Network::zeros(sizes);
-    network.parameters = parameters;
+    network.parameters = read("parameters")?;
     let adam = match steps {
         0 => Adam::new(count),
         steps => Adam { mean: read("mean")?, square: read("square")?, steps },
