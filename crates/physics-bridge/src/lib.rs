@@ -49,7 +49,7 @@ pub use character::{
     Character, Contact, Diverged, HISTORY_SECS, ModelMismatch, ReplayFile, ReplayFileError, Snapshot,
     SnapshotMismatch, StateHash,
 };
-pub use crowd::{Crowd, CrowdError};
+pub use crowd::{Crowd, CrowdError, Worlds};
 pub use description::body_poses::BodyPoses;
 pub use description::fixture::{Fixture, FixtureShape, MAX_HEIGHTS, MAX_TRIANGLES, TRIANGLE_DEPTH_M};
 pub use description::ground::HeightField;
