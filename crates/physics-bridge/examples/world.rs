@@ -32,6 +32,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         (left, Controller::new(Arc::clone(&pack)), command(50.0)),
         (right, Controller::new(pack), command(-50.0)),
     ];
+    let mut met = false;
     for tick in 0..180 {
         if tick == 45 {
             let throw = Motion::at(Vec3::new(0.0, 4.0, 1.2)).moving(Vec3::new(3.0, -8.0, 2.0));
@@ -41,21 +42,16 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         for divergence in world.divergences() {
             println!("{divergence:?}");
         }
+        met |= world
+            .contacts()
+            .iter()
+            .any(|contact| matches!(contact.parts, [Part::Body(a, _), Part::Body(b, _)] if a != b));
         if tick % 15 == 14 {
-            let [a, b] = [left, right].map(|character| world.sensed(character).map(|s| s.root().position));
-            let met = world
-                .contacts()
-                .iter()
-                .any(|contact| matches!(contact.parts, [Part::Body(a, _), Part::Body(b, _)] if a != b));
-            let crate_ = world.motion(crate_)?.position;
-            println!(
-                "{:4.1} s  left {:5.2} m, right {:5.2} m, crate {:5.2} m{}",
-                (tick + 1) as f32 / model.control_hz(),
-                a?.x,
-                b?.x,
-                crate_.x,
-                if met { ", they touch" } else { "" }
-            );
+            let secs = (tick + 1) as f32 / model.control_hz();
+            let [a, b] = [left, right].map(|character| world.sensed(character).map(|s| s.root().position.x));
+            let (a, b, crate_) = (a?, b?, world.motion(crate_)?.position.x);
+            let met = if std::mem::take(&mut met) { ", they touch" } else { "" };
+            println!("{secs:4.1} s  left {a:5.2} m, right {b:5.2} m, crate {crate_:5.2} m{met}");
         }
     }
     Ok(())

@@ -82,8 +82,9 @@ impl Soak {
                     edit.add_character(&model, x, y, Heading::from_angle(random.between(-3.0, 3.0)), 0.0)
                 };
                 let characters = (0..characters).map(&mut stand).collect::<Result<Vec<_>, _>>()?;
-                let mut put = |_| {
-                    let at = Vec3::new(random.between(-reach, reach), random.between(-reach, reach), 3.0);
+                let mut put = |index: usize| {
+                    let (x, y) = (random.between(-reach, reach), random.between(-reach, reach));
+                    let at = Vec3::new(x, y, 2.0 + 0.35 * (index % 40) as f32);
                     edit.add_prop(prop(&mut random), Motion::at(at))
                 };
                 let props = (0..props).map(&mut put).collect::<Result<Vec<_>, _>>()?;
