@@ -13,7 +13,9 @@ const TOLERANCE: f32 = 1e-5;
 fn walking() -> (Character, Controller) {
     let pack = reference_pack();
     let start = pack.graph().node_named("walk").unwrap();
-    let controller = Controller::with_config(pack, ControllerConfig { start, ..ControllerConfig::default() });
+    // The recording was made without steering.
+    let config = ControllerConfig { start, steering: None, ..ControllerConfig::default() };
+    let controller = Controller::with_config(pack, config);
     let mut character = Character::new(&Model::from_mjcf(HUMANOID_MJCF).unwrap());
     let first = &golden_walk().ticks[0];
     character.set_pose(&first.qpos, &first.qvel).unwrap();

@@ -6,7 +6,7 @@ use std::sync::{Arc, LazyLock};
 use libfuzzer_sys::fuzz_target;
 use policy_core::Skeleton;
 use policy_core::glam::{Quat, Vec3};
-use policy_core::training::{Roles, SkeletonBody};
+use policy_core::training::{Roles, SkeletonBody, SkeletonJoint};
 use policy_core::BodyId;
 use viewer::mesh::{Rig, SkinnedMesh};
 
@@ -17,7 +17,9 @@ const BLOB: usize = 1024;
 static RIG: LazyLock<Rig> = LazyLock::new(|| {
     let body = |name: &str, parent| SkeletonBody { name: name.into(), parent };
     let bodies = vec![body("a", None), body("b", Some(BodyId::new(0)))];
-    let skeleton = Skeleton::from_parts(bodies, Vec::new(), Roles::default()).expect("a sound skeleton");
+    let (name, body) = ("c".into(), BodyId::new(1));
+    let neck = SkeletonJoint { name, body, axis: Vec3::Y, range: [-1.0, 1.0] };
+    let skeleton = Skeleton::from_parts(bodies, vec![neck], Roles::default()).expect("a sound skeleton");
     Rig::new(Arc::new(skeleton), vec![Vec3::ZERO, Vec3::Z])
 });
 

@@ -152,7 +152,9 @@ impl PortGolden {
 }
 
 fn controller(pack: &Arc<CharacterPack>) -> Controller {
-    Controller::with_config(Arc::clone(pack), ControllerConfig::default())
+    // A port may leave steering out: what a policy is shown is the target as it is.
+    let config = ControllerConfig { steering: None, ..ControllerConfig::default() };
+    Controller::with_config(Arc::clone(pack), config)
 }
 
 fn command(pack: &CharacterPack, asked: &PortCommand) -> Command {

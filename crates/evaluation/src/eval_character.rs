@@ -36,8 +36,13 @@ impl EvalCharacter {
     #[must_use]
     pub fn new(model: &Model, pack: &Arc<CharacterPack>, start: &str) -> Self {
         let start = pack.graph().node_named(start).unwrap_or_default();
-        let config =
-            ControllerConfig { auto_recover: false, turn_assist: None, start, ..ControllerConfig::default() };
+        let config = ControllerConfig {
+            auto_recover: false,
+            turn_assist: None,
+            steering: None,
+            start,
+            ..ControllerConfig::default()
+        };
         let mut eval = Self {
             character: Character::new(model),
             controller: Controller::with_config(pack.clone(), config),

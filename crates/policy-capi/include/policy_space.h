@@ -327,6 +327,16 @@ typedef struct PsConfig {
   float turn_begin_radians;
   // Angle from which it acts fully, radians; more than turn_begin_radians.
   float turn_full_radians;
+  // Not 0: hold the course and lead into turns.
+  int32_t steering;
+  // How much further the policy is asked to turn, for each radian between the course and the target; at least 0.
+  float steering_lead;
+  // How fast the trim against drift grows, radians a second for each radian between course and target; at least 0.
+  float steering_trim_per_second;
+  // Largest trim, radians; at least 0.
+  float steering_trim_limit_radians;
+  // Time constant of the low-pass on the velocity, seconds; at least 0.
+  float steering_velocity_secs;
 } PsConfig;
 
 // Motion of one body: of its frame as in the MJCF, not of its centre of mass. World space, all at one moment.

@@ -2,7 +2,7 @@
 
 use std::mem::MaybeUninit;
 
-use policy_core::{Arithmetic, BlendMode, CharacterPack, ControllerConfig, NodeId, TurnAssist};
+use policy_core::{Arithmetic, BlendMode, CharacterPack, ControllerConfig, NodeId, Steering, TurnAssist};
 
 use crate::border::{finite, id, index, present};
 use crate::error::{PsStatus, fail, guard};
@@ -53,11 +53,22 @@ pub struct PsConfig {
     pub turn_begin_radians: f32,
     /// Angle from which it acts fully, radians; more than turn_begin_radians.
     pub turn_full_radians: f32,
+    /// Not 0: hold the course and lead into turns.
+    pub steering: i32,
+    /// How much further the policy is asked to turn, for each radian between the course and the target; at least 0.
+    pub steering_lead: f32,
+    /// How fast the trim against drift grows, radians a second for each radian between course and target; at least 0.
+    pub steering_trim_per_second: f32,
+    /// Largest trim, radians; at least 0.
+    pub steering_trim_limit_radians: f32,
+    /// Time constant of the low-pass on the velocity, seconds; at least 0.
+    pub steering_velocity_secs: f32,
 }
 
 impl Default for PsConfig {
     fn default() -> Self {
         let (config, turn) = (ControllerConfig::default(), TurnAssist::default());
+        let steering = Steering::default();
         Self {
             arithmetic: match config.arithmetic {
                 Arithmetic::Reproducible => PsArithmetic::Reproducible as i32,
@@ -76,6 +87,11 @@ impl Default for PsConfig {
             turn_assist: config.turn_assist.is_some().into(),
             turn_begin_radians: turn.begin_radians,
             turn_full_radians: turn.full_radians,
+            steering: config.steering.is_some().into(),
+            steering_lead: steering.lead,
+            steering_trim_per_second: steering.trim_per_second,
+            steering_trim_limit_radians: steering.trim_limit_radians,
+            steering_velocity_secs: steering.velocity_secs,
         }
     }
 }
@@ -94,10 +110,15 @@ impl PsConfig {
             let text = format_args!("expected turn_full_radians above {begin_radians}, found {full_radians}");
             return Err(fail(PsStatus::BadNumber, text));
         }
-        if finite("handover_secs", self.handover_secs)? < 0.0 {
-            let text = format_args!("expected handover_secs of at least 0, found {}", self.handover_secs);
-            return Err(fail(PsStatus::BadNumber, text));
-        }
+        let steering = Steering {
+            lead: not_negative("steering_lead", self.steering_lead)?,
+            trim_per_second: not_negative("steering_trim_per_second", self.steering_trim_per_second)?,
+            trim_limit_radians: not_negative(
+                "steering_trim_limit_radians",
+                self.steering_trim_limit_radians,
+            )?,
+            velocity_secs: not_negative("steering_velocity_secs", self.steering_velocity_secs)?,
+        };
         Ok(ControllerConfig {
             arithmetic,
             cache_blends: self.cache_blends != 0,
@@ -105,10 +126,19 @@ impl PsConfig {
             assist_rise: self.assist_rise != 0,
             start: NodeId::new(index("node", self.start_node, pack.graph().nodes().len())?),
             blend_mode: blend_mode(self.blend_mode)?,
-            handover_secs: self.handover_secs,
+            handover_secs: not_negative("handover_secs", self.handover_secs)?,
             turn_assist: (self.turn_assist != 0).then_some(turn),
+            steering: (self.steering != 0).then_some(steering),
         })
     }
+}
+
+/// A number of at least 0.
+fn not_negative(name: &str, number: f32) -> Result<f32, PsStatus> {
+    if finite(name, number)? < 0.0 {
+        return Err(fail(PsStatus::BadNumber, format_args!("expected {name} of at least 0, found {number}")));
+    }
+    Ok(number)
 }
 
 /// A blend mode from outside.

@@ -187,6 +187,7 @@ fn the_choices_reach_the_controller() {
     let usual = ControllerConfig::default();
     assert_eq!((config.auto_recover != 0, config.start_node), (usual.auto_recover, 0));
     assert_eq!(config.turn_assist != 0, usual.turn_assist.is_some());
+    assert_eq!(config.steering != 0, usual.steering.is_some());
     (config.start_node, config.blend_mode) = (1, PsBlendMode::Switch as i32);
     let mut controller = ps_controller_new(Some(&pack), Some(&config)).unwrap();
     assert_eq!(report(&controller).position.from_node, 1);

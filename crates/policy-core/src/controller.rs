@@ -4,6 +4,8 @@
 use alloc::sync::Arc;
 use alloc::vec::Vec;
 
+use glam::Vec2;
+
 use crate::action::ActionScaling;
 use crate::blend::Blend;
 use crate::command::Command;
@@ -19,6 +21,7 @@ use crate::report::{StateFault, TickReport};
 use crate::scorer::Scorer;
 use crate::skill::SkillEnd;
 use crate::state::{CharacterState, JointTargets};
+use crate::steering::{Course, Steering};
 use crate::turn_assist::TurnAssist;
 
 mod skills;
@@ -55,6 +58,8 @@ pub struct ControllerConfig {
     pub handover_secs: f32,
     /// Slow down fast gaits while the target lies far off the heading, the default; `None` to leave turning to the policies.
     pub turn_assist: Option<TurnAssist>,
+    /// Hold the course and lead into turns, the default; `None` to give the policies the target as it is.
+    pub steering: Option<Steering>,
 }
 
 impl Default for ControllerConfig {
@@ -68,6 +73,7 @@ impl Default for ControllerConfig {
             blend_mode: BlendMode::Parameters,
             handover_secs: 0.0,
             turn_assist: Some(TurnAssist::default()),
+            steering: Some(Steering::default()),
         }
     }
 }
@@ -245,7 +251,7 @@ impl Controller {
         self.request_skill(command.skill, state, heights, dt);
         self.travel(state, command, heights, dt);
         self.choose_blend(command);
-        self.observe(state, command);
+        self.observe(state, command, dt);
         true
     }
 
@@ -323,8 +329,18 @@ impl Controller {
         }
     }
 
-    fn observe(&mut self, state: &CharacterState, command: &Command) {
-        let target_world = self.target(state, command);
+    /// The target that the policy is to see. Without one there is no course to hold, and a skill's own target stays as it is.
+    fn steered(&mut self, state: &CharacterState, target: Option<Vec2>, dt: f32) -> Option<Vec2> {
+        let steering = self.config.steering.filter(|_| self.state.report.skill.is_none());
+        let (Some(steering), Some(target)) = (steering, target) else {
+            self.state.course = Course::default();
+            return target;
+        };
+        Some(steering.adjusted(&mut self.state.course, state, target, dt))
+    }
+
+    fn observe(&mut self, state: &CharacterState, command: &Command, dt: f32) {
+        let target_world = self.steered(state, self.target(state, command), dt);
         let skeleton = self.pack.skeleton();
         let (observation, target) = self.input.split_at_mut(skeleton.observation_len());
         observe_into(skeleton, state, observation);

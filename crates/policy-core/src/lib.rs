@@ -95,6 +95,7 @@ mod skeleton;
 mod skill;
 mod state;
 mod state_bytes;
+mod steering;
 pub mod training;
 mod turn_assist;
 
@@ -124,4 +125,5 @@ pub use report::{StateFault, TickReport};
 pub use skeleton::Skeleton;
 pub use skill::{Refusal, Skill, SkillEnd};
 pub use state::{BodyState, CharacterState, JointTargets};
+pub use steering::Steering;
 pub use turn_assist::TurnAssist;

@@ -1,6 +1,6 @@
 //! A [`ControllerState`] as bytes, little-endian, of one length for each pack.
 //!
-//! Order: version, report, fall timers, frame history, resting blend, interrupted skill, joint targets, hand-over. An
+//! Order: version, report, fall timers, frame history, resting blend, interrupted skill, joint targets, hand-over, course. An
 //! absent value is a zero flag and zeros, so that equal states give equal bytes.
 
 use crate::blend::{Blend, BlendTerm, MAX_BLEND_TERMS};
@@ -14,7 +14,7 @@ use crate::report::{StateFault, TickReport};
 use crate::skill::{Refusal, SkillEnd, SkillProgress};
 
 /// First four bytes: `PSS` and the version.
-const VERSION: u32 = u32::from_le_bytes(*b"PSS\x01");
+const VERSION: u32 = u32::from_le_bytes(*b"PSS\x02");
 
 const POSITION_LEN: usize = 2 + 2 + 4;
 const BLEND_LEN: usize = 1 + MAX_BLEND_TERMS * (2 + 4 * MAX_LAYERS);
@@ -22,7 +22,7 @@ const SKILL_LEN: usize = 3;
 const PROGRESS_LEN: usize = SKILL_LEN + 4 + 4 + 1 + 4;
 const REPORT_LEN: usize =
     2 * POSITION_LEN + BLEND_LEN + 1 + 8 + PROGRESS_LEN + 2 * SKILL_LEN + 2 * (SKILL_LEN + 1) + 3;
-const FIXED_LEN: usize = 4 + REPORT_LEN + 8 + 2 + BLEND_LEN + 4 + SKILL_LEN + 8;
+const FIXED_LEN: usize = 4 + REPORT_LEN + 8 + 2 + BLEND_LEN + 4 + SKILL_LEN + 8 + 12;
 
 impl ControllerState {
     /// Number of bytes; one for all states of a pack.
@@ -50,6 +50,8 @@ impl ControllerState {
         w.floats(&self.targets);
         w.floats(&self.handover_from);
         w.floats(&[self.handover_secs, self.pending_secs]);
+        let course = self.course;
+        w.floats(&[course.velocity.x, course.velocity.y, course.trim]);
         debug_assert_eq!(w.at, w.out.len());
     }
 
@@ -88,6 +90,8 @@ impl ControllerState {
         r.floats(&mut self.targets);
         r.floats(&mut self.handover_from);
         (self.handover_secs, self.pending_secs) = (r.float(), r.float());
+        (self.course.velocity.x, self.course.velocity.y, self.course.trim) =
+            (r.float(), r.float(), r.float());
         Ok(())
     }
 }

@@ -11,7 +11,7 @@ use clips::ClipFolder;
 use evaluation::{Effort, PlayerReport, Progress, Section, clip_states, evaluate, plots, table};
 use files::write_atomically;
 use physics_bridge::Model;
-use policy_core::{CharacterPack, CharacterState, ControllerConfig, TurnAssist};
+use policy_core::{CharacterPack, CharacterState, ControllerConfig, Steering, TurnAssist};
 use trainer::recipe::Recipe;
 
 use super::output::say;
@@ -40,6 +40,9 @@ pub(crate) struct Arguments {
     /// Leave turning to the policies: the player's controller does not slow down to turn.
     #[arg(long)]
     no_turn_assist: bool,
+    /// Give the policies the target as it is: the player's controller neither trims against drift nor leads into turns.
+    #[arg(long)]
+    no_steering: bool,
     /// Seconds in which the player's controller passes from the joint targets before a skill to those of the skill.
     #[arg(long, default_value_t = 0.0, value_parser = seconds)]
     handover_secs: f32,
@@ -79,7 +82,8 @@ pub(crate) fn run(
     };
     let turn_assist = (!arguments.no_turn_assist).then(TurnAssist::default);
     let handover_secs = arguments.handover_secs;
-    let config = ControllerConfig { turn_assist, handover_secs, ..ControllerConfig::default() };
+    let steering = (!arguments.no_steering).then(Steering::default);
+    let config = ControllerConfig { steering, turn_assist, handover_secs, ..ControllerConfig::default() };
     let progress = Progress::bar();
     let evaluation = evaluate(model, &Arc::new(pack), config, (&effort, sections), &states, &progress)?;
     progress.finish();

@@ -51,6 +51,7 @@ impl Rollout {
             auto_recover: false,
             assist_rise: false,
             turn_assist: None,
+            steering: None,
             start,
             ..ControllerConfig::default()
         };

@@ -121,6 +121,7 @@ impl Workspace {
             auto_recover: false,
             assist_rise: false,
             turn_assist: None,
+            steering: None,
             ..ControllerConfig::default()
         };
         Ok(HandOver { controller: Controller::with_config(pack, config), skill: SkillId::new(0), node })

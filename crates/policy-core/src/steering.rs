@@ -1,0 +1,85 @@
+//! Holding the course: a policy drifts aside and begins a turn late. Feedback from the direction of travel corrects both.
+
+use core::f32::consts::PI;
+
+use glam::Vec2;
+
+use crate::heading::Heading;
+use crate::state::CharacterState;
+
+/// Slowest speed that has a direction, metres per second. Below it the heading counts.
+const LEAST_SPEED: f32 = 0.1;
+
+/// Speed from which the direction of the velocity counts alone, metres per second.
+const FULL_SPEED: f32 = 0.3;
+
+/// Errors beyond this are turns, not drift, radians.
+const DRIFT_RADIANS: f32 = 0.6;
+
+/// Largest angle off the heading to which the lead raises what a policy is asked for, radians. Larger turns are slower with it.
+const LARGEST_RADIANS: f32 = 0.5 * PI;
+
+/// Feedback from the course, the direction in which the root moves, to the direction that the policy is asked for.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Steering {
+    /// How much further the policy is asked to turn than the target lies, for each radian between course and target.
+    pub lead: f32,
+    /// How fast the trim against drift grows, radians a second for each radian between course and target.
+    pub trim_per_second: f32,
+    /// Largest trim, radians.
+    pub trim_limit_radians: f32,
+    /// Time constant of the low-pass on the velocity, seconds.
+    pub velocity_secs: f32,
+}
+
+impl Default for Steering {
+    fn default() -> Self {
+        Self { lead: 0.5, trim_per_second: 0.8, trim_limit_radians: 0.5, velocity_secs: 0.3 }
+    }
+}
+
+/// What steering remembers from tick to tick.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(crate) struct Course {
+    /// Low-passed horizontal velocity of the root, world, metres per second.
+    pub(crate) velocity: Vec2,
+    /// Angle that is added against drift, radians.
+    pub(crate) trim: f32,
+}
+
+impl Steering {
+    /// The target turned about the root so that the course goes to where it lies.
+    #[must_use]
+    pub(crate) fn adjusted(self, course: &mut Course, state: &CharacterState, target: Vec2, dt: f32) -> Vec2 {
+        let root = state.root();
+        let now = root.linear_velocity.truncate();
+        let share = if self.velocity_secs > 0.0 { (dt / self.velocity_secs).min(1.0) } else { 1.0 };
+        course.velocity += (now - course.velocity) * share;
+        let to_target = target - root.position.truncate();
+        let distance = libm::sqrtf(to_target.length_squared());
+        if !(distance.is_finite() && distance > 1e-3) {
+            return target;
+        }
+        let wanted = Heading::from_direction(to_target).angle();
+        let off_heading = wrapped(wanted - Heading::from_rotation(root.rotation).angle());
+        let speed = libm::sqrtf(course.velocity.length_squared());
+        let off_course = wrapped(wanted - Heading::from_direction(course.velocity).angle());
+        let moving = ((speed - LEAST_SPEED) / (FULL_SPEED - LEAST_SPEED)).clamp(0.0, 1.0);
+        // Facing away, what counts is the side to turn to, not where the momentum of the old direction still leads.
+        let error = if libm::fabsf(off_heading) > DRIFT_RADIANS { off_heading } else { moving * off_course };
+        if libm::fabsf(off_heading) < DRIFT_RADIANS && libm::fabsf(off_course) < DRIFT_RADIANS {
+            let limit = self.trim_limit_radians;
+            let trim = course.trim + moving * off_course * self.trim_per_second * dt;
+            course.trim = if trim.is_finite() { trim.max(-limit).min(limit) } else { 0.0 };
+        }
+        let largest = libm::fabsf(off_heading).max(LARGEST_RADIANS);
+        let asked = (off_heading + self.lead * error + course.trim).clamp(-largest, largest);
+        let turned = Heading::from_angle(asked - off_heading);
+        root.position.truncate() + turned.world_from_heading_2d(to_target)
+    }
+}
+
+/// An angle in [-pi, pi].
+fn wrapped(radians: f32) -> f32 {
+    radians - 2.0 * PI * libm::roundf(radians / (2.0 * PI))
+}

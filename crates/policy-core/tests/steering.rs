@@ -1,0 +1,104 @@
+//! Steering: a body that drifts is brought onto its course, and a turn is begun with a lead.
+
+mod common;
+
+use std::f32::consts::PI;
+use std::sync::Arc;
+
+use common::standing;
+use glam::{Quat, Vec2};
+use policy_core::{CharacterState, Command, Controller, ControllerConfig, ControllerState, Steering};
+
+const DT: f32 = 1.0 / 30.0;
+
+fn controller(steering: Option<Steering>) -> Controller {
+    let config = ControllerConfig { steering, ..ControllerConfig::default() };
+    Controller::with_config(Arc::new(common::pack(0.0)), config)
+}
+
+/// A body with this heading and course, radians, and speed.
+fn body(heading: f32, course: f32, speed: f32) -> CharacterState {
+    let mut state = standing();
+    let root = &mut state.bodies[0];
+    root.rotation = Quat::from_rotation_z(heading);
+    root.linear_velocity = (Vec2::from_angle(course) * speed).extend(0.0);
+    state
+}
+
+/// Angle off the heading that the policy is asked for after `ticks` with the target this far off world x.
+fn asked(controller: &mut Controller, state: &CharacterState, target: f32, ticks: usize) -> f32 {
+    let target = Some(state.root().position.truncate() + 5.0 * Vec2::from_angle(target));
+    for _ in 0..ticks {
+        controller.tick(state, &Command { target, ..Command::default() }, DT);
+    }
+    let [x, y] = controller.report().target;
+    y.atan2(x)
+}
+
+/// A body that turns towards what it is asked for, as a policy does, and slides aside by `drift`. Its last course.
+fn walked(steering: Option<Steering>, drift: f32, target: f32) -> f32 {
+    let mut controller = controller(steering);
+    let (mut heading, mut course) = (0.0, drift);
+    for _ in 0..240 {
+        let off = asked(&mut controller, &body(heading, course, 1.2), target, 1);
+        heading += 3.0 * off * DT;
+        course = heading + drift;
+    }
+    course
+}
+
+#[test]
+fn drift_is_trimmed_away() {
+    for drift in [0.3f32, -0.2] {
+        for target in [0.0, 2.5, -PI + 0.1] {
+            let off = |course: f32| (course - target + PI).rem_euclid(2.0 * PI) - PI;
+            assert!((off(walked(None, drift, target)) - drift).abs() < 0.02);
+            let left = off(walked(Some(Steering::default()), drift, target));
+            assert!(left.abs() < 0.02, "{left} of {drift} to {target}");
+        }
+    }
+}
+
+#[test]
+fn a_turn_is_led_up_to_a_right_angle_and_not_beyond_the_target() {
+    let ask =
+        |target: f32| asked(&mut controller(Some(Steering::default())), &body(0.0, 0.0, 1.2), target, 1);
+    for target in [0.7f32, 1.0, -0.8] {
+        assert!(ask(target).abs() > target.abs() + 0.1, "{target}: {}", ask(target));
+        assert!(ask(target).abs() <= PI / 2.0 + 1e-4, "{target}: {}", ask(target));
+    }
+    for target in [2.0f32, 3.0, -2.5] {
+        assert!((ask(target) - target).abs() < 1e-4, "{target}: {}", ask(target));
+    }
+}
+
+#[test]
+fn the_trim_is_limited_and_forgotten_without_a_target() {
+    let limits = Steering { lead: 0.0, trim_per_second: 5.0, trim_limit_radians: 0.2, ..Steering::default() };
+    let mut controller = controller(Some(limits));
+    let aside = body(0.0, 0.4, 1.2);
+    assert!((asked(&mut controller, &aside, 0.0, 90) + 0.2).abs() < 1e-3);
+    controller.tick(&aside, &Command::default(), DT);
+    assert_eq!(controller.report().target, [0.0; 2]);
+    assert!(asked(&mut controller, &aside, 0.0, 1).abs() < 0.1);
+}
+
+#[test]
+fn who_stands_has_no_course() {
+    let mut controller = controller(Some(Steering::default()));
+    let swaying = body(0.0, 1.5, 0.05);
+    assert!(asked(&mut controller, &swaying, 0.0, 60).abs() < 1e-3);
+}
+
+#[test]
+fn numbers_that_are_not_finite_leave_the_state_sound() {
+    for bad in [f32::NAN, f32::INFINITY] {
+        let steering = Steering { trim_per_second: bad, lead: bad, ..Steering::default() };
+        let mut controller = controller(Some(steering));
+        asked(&mut controller, &body(0.1, 0.3, 1.2), 0.0, 10);
+        assert!(controller.joint_targets().iter().all(|t| t.is_finite()));
+        let mut state = ControllerState::new(controller.pack());
+        controller.save_into(&mut state);
+        assert_eq!(controller.restore(&state), Ok(()), "{bad}");
+    }
+}
