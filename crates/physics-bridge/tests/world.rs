@@ -4,9 +4,9 @@ mod common;
 
 use common::shared_world;
 use common::shared_world::{add, pose, put, run, world, wriggle};
-use common::wriggle_into;
+use common::{humanoid, wriggle_into};
 use glam::{Quat, Vec2, Vec3};
-use physics_bridge::{Fixture, FixtureShape, Motion, Movable, Part, Prop, Solid, World, WorldError};
+use physics_bridge::{Fixture, FixtureShape, Motion, Movable, Part, Prop, Solid, Terrain, World, WorldError};
 use policy_core::{CharacterState, Heading, JointTargets};
 
 #[test]
@@ -254,5 +254,32 @@ fn characters_stand_on_fixtures_and_sense_their_height() {
     for ([ground, root], expected) in start.iter().zip([0.0, 0.5, 0.4, 0.3]) {
         assert!((ground - expected).abs() < 0.01, "{ground} {expected}");
         assert!((root - expected - start[0][1]).abs() < 0.01, "{root} {expected}");
+    }
+}
+
+#[test]
+fn a_world_has_the_terrain_of_its_model() {
+    let flat = humanoid();
+    for terrain in [
+        Terrain::Wavy { height_m: 0.7, wavelength_m: 6.0, seed: 3 },
+        Terrain::Steps { rise_m: 0.1, run_m: 1.5, count: 4 },
+    ] {
+        let model = flat.with_terrain(terrain).unwrap();
+        let mut world = World::new(&model).unwrap();
+        let place = Vec2::new(4.5, 0.6);
+        let ground = model.height_at(place.x, place.y);
+        assert!(ground > 0.05, "{ground}");
+        let character = add(&mut world, &flat, place.x, place.y, 0.0, 0.0);
+        let at = (place + Vec2::Y * 3.0).extend(ground + 1.0);
+        let ball = put(&mut world, Prop { bounce: 0.0, ..Prop::ball(0.1, 1.0) }, Motion::at(at));
+        run(&mut world, 20);
+        let mut state = CharacterState::new(flat.skeleton());
+        world.sense_into(character, &mut state).unwrap();
+        let root = state.root().position;
+        assert!((state.ground_height - model.height_at(root.x, root.y)).abs() < 1e-3);
+        assert!((0.6..1.0).contains(&(root.z - state.ground_height)), "{root} {}", state.ground_height);
+        let ball = world.motion(ball).unwrap().position;
+        let below = model.height_at(ball.x, ball.y);
+        assert!((0.05..0.2).contains(&(ball.z - below)), "{ball} {below}");
     }
 }

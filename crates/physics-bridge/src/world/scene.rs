@@ -127,14 +127,17 @@ impl Scene {
 
     /// Drops what is neither present nor reserved, before the simulation is built again.
     pub(super) fn drop_absent(&mut self) {
-        let absent = |slots: &Slots<PropRecord>| -> Vec<usize> {
-            slots.iter().filter(|(_, s)| !s.present && !s.value.is_reserved).map(|(i, _)| i).collect()
-        };
-        for index in absent(&self.props) {
+        let absent: Vec<(usize, bool)> = (self.props.iter())
+            .filter(|(_, slot)| !slot.present)
+            .map(|(index, slot)| (index, slot.value.is_reserved))
+            .collect();
+        for (index, is_reserved) in absent {
             for joint in self.joints_of(index) {
                 self.remove_joint(joint);
             }
-            self.props.clear(index);
+            if !is_reserved {
+                self.props.clear(index);
+            }
         }
         let gone: Vec<usize> =
             self.characters.iter().filter(|(_, s)| !s.present).map(|(index, _)| index).collect();
