@@ -1,25 +1,5 @@
 //! A shared world: any number of characters of any models, props, fixtures and joints in one MuJoCo simulation. All of
 //! them touch each other; a character touches itself only where its own model says so.
-//!
-//! # The order of a tick
-//! | # | who | what |
-//! |---|---|---|
-//! | 1 | game | [`World::edit`] adds and removes; [`World::push`], [`World::grab`] and the like act from outside |
-//! | 2 | game | [`World::sense_into`] for each character, a controller, [`World::actuate`]; or [`World::control_tick`] for all |
-//! | 3 | [`World::step`] | notes the state, to fall back on |
-//! | 4 | | every substep: forces from outside, contacts and motion, then all that is derived from the new state |
-//! | 5 | | looks for what diverged; puts it back or takes it out, and repeats 3 to 5 for all |
-//! | 6 | | notes where each character stands and how high the ground below it is; records the history |
-//! | 7 | game | [`World::divergences`], [`World::contacts`], [`World::poses_into`] |
-//!
-//! # What diverges
-//! Islands that do not touch each other are solved apart, so one cannot spoil another. A tick with a divergence is
-//! repeated from its start. What is well therefore moves as if what diverged had been put back before the tick.
-//!
-//! # What an edit keeps
-//! Position, velocity, targets, forces and the start of the solver of everything that stays are kept bit for bit. An
-//! edit that adds something builds the simulation anew, which takes milliseconds and grows with the world, so many
-//! things are best added in one edit. Props that were reserved, or removed since the last build, come back for nothing.
 
 mod accuse;
 mod build;
@@ -63,7 +43,8 @@ pub use self::recover::{Divergence, Diverging, Remedy};
 pub use self::snapshot::{LayoutMismatch, WorldSnapshot};
 pub use self::step::{StageTimes, measure_stages};
 
-/// One simulation of many things. The module's page tells the order of a tick.
+/// One simulation of any number of characters of any models, props, fixtures and joints. All of them touch each other;
+/// a character touches itself only where its own model says so.
 ///
 /// ```
 /// # fn main() -> Result<(), Box<dyn std::error::Error>> {
@@ -88,6 +69,26 @@ pub use self::step::{StageTimes, measure_stages};
 /// # Ok(())
 /// # }
 /// ```
+///
+/// # The order of a tick
+/// | # | who | what |
+/// |---|---|---|
+/// | 1 | game | [`World::edit`] adds and removes; [`World::push`], [`World::grab`] and the like act from outside |
+/// | 2 | game | [`World::sense_into`] for each character, a controller, [`World::actuate`]; or [`World::control_tick`] for all |
+/// | 3 | [`World::step`] | notes the state, to fall back on |
+/// | 4 | | every substep: forces from outside, contacts and motion, then all that is derived from the new state |
+/// | 5 | | looks for what diverged; puts it back or takes it out, and repeats 3 to 5 for all |
+/// | 6 | | notes where each character stands and how high the ground below it is; records the history |
+/// | 7 | game | [`World::divergences`], [`World::contacts`], [`World::poses_into`] |
+///
+/// # What diverges
+/// Islands that do not touch each other are solved apart, so one cannot spoil another. A tick with a divergence is
+/// repeated from its start. What is well therefore moves as if what diverged had been put back before the tick.
+///
+/// # What an edit keeps
+/// Position, velocity, targets, forces and the start of the solver of everything that stays are kept bit for bit. An
+/// edit that adds something builds the simulation anew, which takes milliseconds and grows with the world, so many
+/// things are best added in one edit. Props that were reserved, or removed since the last build, come back for nothing.
 #[derive(Debug)]
 pub struct World {
     ground: Model,

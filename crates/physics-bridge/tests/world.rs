@@ -6,7 +6,9 @@ use common::shared_world;
 use common::shared_world::{add, pose, put, run, world, wriggle};
 use common::{humanoid, wriggle_into};
 use glam::{Quat, Vec2, Vec3};
-use physics_bridge::{Fixture, FixtureShape, Motion, Movable, Part, Prop, Solid, Terrain, World, WorldError};
+use physics_bridge::{
+    Fixture, FixtureShape, Motion, Movable, Part, Prop, Settings, Solid, Terrain, World, WorldError,
+};
 use policy_core::{CharacterState, Heading, JointTargets};
 
 #[test]
@@ -282,4 +284,17 @@ fn a_world_has_the_terrain_of_its_model() {
         let below = model.height_at(ball.x, ball.y);
         assert!((0.05..0.2).contains(&(ball.z - below)), "{ball} {below}");
     }
+}
+
+#[test]
+fn a_world_has_the_friction_and_gravity_of_its_model() {
+    let slides = |friction: f32, gravity: f32| {
+        let settings = Settings { friction, gravity, ..Settings::default() };
+        let mut world = World::new(&humanoid().with_settings(settings).unwrap()).unwrap();
+        let crate_ = put(&mut world, Prop::cube(0.4, 5.0), Motion::at(Vec3::Z * 0.2).moving(Vec3::X * 3.0));
+        run(&mut world, 45);
+        world.motion(crate_).unwrap().position.x
+    };
+    let (usual, ice, moon) = (slides(1.0, 1.0), slides(0.1, 1.0), slides(1.0, 0.165));
+    assert!(ice > 2.0 * usual && moon > 1.5 * usual, "{usual} {ice} {moon}");
 }

@@ -21,7 +21,7 @@ const LEAST_AREA_M2: f32 = 1e-6;
 pub struct Fixture {
     /// Its shape.
     pub shape: FixtureShape,
-    /// Metres, world space, at most [`MAX_DISTANCE_M`] from the origin.
+    /// Metres, world space, at most [`MAX_DISTANCE_M`](crate::MAX_DISTANCE_M) from the origin.
     pub position: Vec3,
     /// `world_from_fixture`, a unit quaternion.
     pub rotation: Quat,

@@ -61,6 +61,7 @@ pub(super) fn build(ground: &Model, scene: &Scene) -> Result<Built, WorldError> 
     let compile = |error: &dyn std::error::Error| WorldError::Compile { message: error.to_string() };
     let mut physics = Box::new(spec.compile().map_err(|error| compile(&error))?);
     apply_strength(&mut physics, scene)?;
+    apply_friction(&mut physics, ground.settings().friction.into());
     let places = Places::of(&physics, scene)?;
     Ok(Built { physics, places })
 }
@@ -174,6 +175,15 @@ fn apply_strength(physics: &mut MjModel, scene: &Scene) -> Result<(), WorldError
         layout.scale_strength(physics, strength);
     }
     Ok(())
+}
+
+/// Multiplies the friction of all but the plane and the terrain, which have it from their own model.
+fn apply_friction(physics: &mut MjModel, factor: f64) {
+    for geom in 0..physics.geom_bodyid().len() {
+        if physics.geom_bodyid()[geom] != 0 {
+            physics.geom_friction_mut()[geom][0] *= factor;
+        }
+    }
 }
 
 #[cfg(test)]
