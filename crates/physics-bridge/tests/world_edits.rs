@@ -5,7 +5,9 @@ mod common;
 use common::humanoid;
 use common::shared_world::{add, bits, pose, put, run, world, wriggle};
 use glam::{Quat, Vec2, Vec3};
-use physics_bridge::{Fixture, FixtureShape, Joint, Motion, Movable, Part, Prop, Solid, World, WorldError};
+use physics_bridge::{
+    Fixture, FixtureShape, Joint, MASS_RANGE_KG, Motion, Movable, Part, Prop, Solid, World, WorldError,
+};
 use policy_core::{BodyId, CharacterState, Heading, JointTargets};
 
 #[test]
@@ -269,4 +271,41 @@ fn targets_that_are_no_numbers_are_ignored_and_told_once() {
     );
     assert_eq!(found.what, Some(physics_bridge::Diverging::Character(character)));
     run(&mut world, 3);
+}
+
+#[test]
+fn shapes_at_the_edge_of_what_is_allowed_are_built_or_refused() {
+    let (mut world, _) = world();
+    let thin = |thickness: f32| -> Vec<Vec3> {
+        let corner = |i: usize| Vec3::new((i & 1) as f32, (i >> 1 & 1) as f32, (i >> 2) as f32 * thickness);
+        (0..16).map(|i| corner(i % 8)).collect()
+    };
+    let solids = [
+        Solid::Hull { points: thin(0.0021).into() },
+        Solid::Hull { points: thin(99.0).into() },
+        Solid::Hull { points: thin(0.003).iter().map(|p| *p * Vec3::new(0.003, 0.003, 1.0)).collect() },
+        Solid::Cuboid { half_extents: Vec3::new(0.005, 100.0, 0.005) },
+        Solid::Cylinder { radius: 100.0, half_length: 0.005 },
+        Solid::Sphere { radius: 0.005 },
+    ];
+    for (index, solid) in solids.into_iter().enumerate() {
+        for mass in MASS_RANGE_KG {
+            let motion = Motion::at(Vec3::new(500.0 * index as f32, 0.1 * mass, 150.0));
+            let added = world.edit(|edit| edit.add_prop(Prop::new(solid.clone(), mass), motion));
+            assert!(matches!(added, Ok(_) | Err(WorldError::Compile { .. })), "{added:?}");
+        }
+    }
+    let slivers = Fixture {
+        shape: FixtureShape::Triangles {
+            points: vec![Vec3::ZERO, Vec3::X, Vec3::new(0.5, 3e-6, 0.0), Vec3::Y * 100.0].into(),
+            triangles: vec![[0, 1, 2], [0, 1, 3], [1, 0, 3]].into(),
+        },
+        ..Fixture::new(Solid::Sphere { radius: 1.0 }, Vec3::new(0.0, -500.0, 0.0))
+    };
+    let added = world.edit(|edit| edit.add_fixture(slivers));
+    assert!(matches!(added, Ok(_) | Err(WorldError::Compile { .. })), "{added:?}");
+    for _ in 0..30 {
+        world.step();
+    }
+    assert!(world.props().count() > 4);
 }
