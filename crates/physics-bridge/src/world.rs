@@ -14,6 +14,7 @@ mod presence;
 mod ray;
 mod recover;
 mod scene;
+mod settings;
 mod snapshot;
 mod solids;
 mod stand;

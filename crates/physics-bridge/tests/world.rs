@@ -298,3 +298,27 @@ fn a_world_has_the_friction_and_gravity_of_its_model() {
     let (usual, ice, moon) = (slides(1.0, 1.0), slides(0.1, 1.0), slides(1.0, 0.165));
     assert!(ice > 2.0 * usual && moon > 1.5 * usual, "{usual} {ice} {moon}");
 }
+
+#[test]
+fn settings_change_while_a_world_runs() {
+    let (mut world, model) = world();
+    let [a, b] = [0.0, 3.0].map(|x| add(&mut world, &model, x, 0.0, 0.0, 0.0));
+    let crate_ = put(&mut world, Prop::cube(0.4, 5.0), Motion::at(Vec3::new(-3.0, 0.0, 2.0)));
+    let with = |settings| model.with_settings(settings).unwrap();
+    world.set_ground(&with(Settings { gravity: 0.0, ..Settings::default() })).unwrap();
+    run(&mut world, 30);
+    assert!((world.motion(crate_).unwrap().position.z - 2.0).abs() < 1e-4, "it floats");
+    world.set_ground(&model).unwrap();
+    world.set_model(b, &with(Settings { strength: 0.0, ..Settings::default() })).unwrap();
+    run(&mut world, 30);
+    let before = [a, b].map(|character| pose(&world, character).qpos[2]);
+    assert!(world.motion(crate_).unwrap().position.z < 1.0 && before[1] < before[0] - 0.05, "{before:?}");
+    put(&mut world, Prop::cube(0.3, 5.0), Motion::at(Vec3::new(-5.0, 0.0, 2.0)));
+    run(&mut world, 15);
+    assert!(pose(&world, b).qpos[2] < before[1], "the settings outlast a build");
+    world.set_model(b, &model).unwrap();
+    assert_eq!(world.model(b).unwrap().settings(), Settings::default());
+    let other = common::quadruped();
+    assert!(matches!(world.set_ground(&other), Err(WorldError::OtherModel)));
+    assert!(matches!(world.set_model(b, &other), Err(WorldError::OtherModel)));
+}

@@ -86,6 +86,9 @@ pub enum WorldError {
         /// The character's physics step, seconds.
         found_timestep_secs: f64,
     },
+    /// The model differs in more than its settings.
+    #[error("expected a model made by `with_settings` of the present one, found another")]
+    OtherModel,
     /// A character's geoms use too many contact bits.
     #[error("expected contype and conaffinity to use at most {most} bits, found {found}")]
     ContactBits {

@@ -14,6 +14,7 @@ use mujoco_rs::wrappers::mj_model::{MjModel, MjtDisableBit, MjtGeomBase, MjtJaco
 
 use super::places::{Places, character_prefix};
 use super::scene::Scene;
+use super::settings::copy_motors;
 use super::solids;
 use crate::description::layout::Layout;
 use crate::description::mjcf::{self, FLOOR};
@@ -61,8 +62,8 @@ pub(super) fn build(ground: &Model, scene: &Scene) -> Result<Built, WorldError> 
     let compile = |error: &dyn std::error::Error| WorldError::Compile { message: error.to_string() };
     let mut physics = Box::new(spec.compile().map_err(|error| compile(&error))?);
     apply_strength(&mut physics, scene)?;
-    apply_friction(&mut physics, ground.settings().friction.into());
     let places = Places::of(&physics, scene)?;
+    apply_friction(&mut physics, ground.settings().friction.into());
     Ok(Built { physics, places })
 }
 
@@ -167,12 +168,8 @@ fn code(index: usize) -> i32 {
 /// Applies the strength that the settings of each character's model give it.
 fn apply_strength(physics: &mut MjModel, scene: &Scene) -> Result<(), WorldError> {
     for (index, slot) in scene.characters.iter() {
-        let strength = f64::from(slot.value.settings().strength);
-        if strength == 1.0 {
-            continue;
-        }
         let layout = Layout::attached(physics, slot.value.skeleton(), &character_prefix(index))?;
-        layout.scale_strength(physics, strength);
+        copy_motors(physics, &layout, &slot.value);
     }
     Ok(())
 }

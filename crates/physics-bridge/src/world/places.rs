@@ -65,7 +65,9 @@ pub(super) struct Places {
     pub qpos_bodies: Box<[usize]>,
     /// `contype` and `conaffinity` of each geom while its owner is present.
     pub geom_bits: Box<[[i32; 2]]>,
-    /// The same of each body.
+    /// Sliding friction of each geom while the world's settings are the usual ones.
+    pub frictions: Box<[f64]>,
+    /// `contype` and `conaffinity` of each body.
     pub body_bits: Box<[[i32; 2]]>,
     /// The same for equal models, and hardly ever for others.
     pub hash: u64,
@@ -82,6 +84,7 @@ impl Places {
             owners: vec![Owner::Ground; bodies].into(),
             qpos_bodies: qpos_bodies(model),
             geom_bits: bits(model.geom_contype(), model.geom_conaffinity()),
+            frictions: model.geom_friction().iter().map(|friction| friction[0]).collect(),
             body_bits: bits(model.body_contype(), model.body_conaffinity()),
             hash: hash(model),
         };
