@@ -2,6 +2,7 @@
 //! result.
 
 mod control;
+mod worlds;
 
 use std::num::NonZeroUsize;
 
@@ -11,6 +12,8 @@ use rayon::{ThreadPool, ThreadPoolBuilder};
 
 use self::control::Batch;
 use crate::character::{Character, Diverged};
+
+pub use self::worlds::Worlds;
 
 /// Characters that are ticked together.
 ///
@@ -59,17 +62,22 @@ pub enum CrowdError {
     },
 }
 
+/// So many threads, by default one for every core.
+fn threads(count: Option<NonZeroUsize>) -> Result<ThreadPool, CrowdError> {
+    ThreadPoolBuilder::new()
+        .num_threads(count.map_or(0, NonZeroUsize::get))
+        .thread_name(|index| format!("crowd-{index}"))
+        .build()
+        .map_err(|source| CrowdError::Threads { source })
+}
+
 impl Crowd {
     /// A crowd of `characters` on `threads`, by default one for every core. Allocates; ticks only where they say.
     ///
     /// # Errors
     /// When the system gives no threads.
     pub fn new(characters: Vec<Character>, threads: Option<NonZeroUsize>) -> Result<Self, CrowdError> {
-        let pool = ThreadPoolBuilder::new()
-            .num_threads(threads.map_or(0, NonZeroUsize::get))
-            .thread_name(|index| format!("crowd-{index}"))
-            .build()
-            .map_err(|source| CrowdError::Threads { source })?;
+        let pool = self::threads(threads)?;
         let member = |character: Character| {
             let targets = JointTargets::new(character.model().skeleton());
             Member { character, targets, failure: None }

@@ -49,16 +49,7 @@ impl Settings {
         let mut model = base.clone();
         model.opt_mut().gravity.iter_mut().for_each(|g| *g *= f64::from(self.gravity));
         model.geom_friction_mut().iter_mut().for_each(|[slide, ..]| *slide *= f64::from(self.friction));
-        let strength = f64::from(self.strength);
-        for actuator in layout.joints.iter().map(|joint| joint.actuator) {
-            // SAFETY: `Layout::of` accepts only motors of fixed gain, whose first gain parameter is a
-            // factor: MuJoCo uses it as an index of nothing.
-            unsafe { model.actuator_gainprm_mut()[actuator][0] *= strength };
-            let [_, position, velocity, ..] = &mut model.actuator_biasprm_mut()[actuator];
-            *position *= strength;
-            *velocity *= strength;
-            model.actuator_forcerange_mut()[actuator].iter_mut().for_each(|f| *f *= strength);
-        }
+        layout.scale_strength(&mut model, self.strength.into());
         Ok(if self.mass == 1.0 { model } else { with_mass(model, self.mass.into()) })
     }
 }
