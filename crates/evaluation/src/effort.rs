@@ -90,6 +90,24 @@ impl Effort {
         push_step_newton: 50.0,
     };
 
+    /// The same with so many characters in every measure; drops and seconds stay.
+    #[must_use]
+    pub fn with_characters(self, count: usize) -> Self {
+        Self {
+            characters: count,
+            characters_uneven: count,
+            characters_each: count,
+            pushed: count,
+            layered: count,
+            settled: count,
+            straight: count,
+            pressed: count,
+            pad_players: count,
+            roamers: count,
+            ..self
+        }
+    }
+
     /// About how long a section takes, in seconds of one character's time.
     #[must_use]
     pub fn nominal_secs(&self, section: Section, pack: &CharacterPack) -> f32 {

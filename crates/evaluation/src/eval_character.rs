@@ -3,7 +3,8 @@
 use std::sync::Arc;
 
 use glam::Vec2;
-use physics_bridge::{Character, Model, WALKING_START_MPS};
+use physics::{Character, Model, PhysicsCharacter};
+use policy_core::contract::WALKING_START_MPS;
 use policy_core::training::{Heights, TARGET_RANGE_METRES};
 use policy_core::{
     CharacterPack, CharacterState, Command, Controller, ControllerConfig, Goal, GraphPosition, Heading,

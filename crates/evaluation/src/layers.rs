@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 use std::ops::Range;
 use std::sync::Arc;
 
-use physics_bridge::Model;
+use physics::Model;
 use policy_core::training::MAX_LAYERS;
 use policy_core::{Blend, CharacterPack, CharacterState, Command, NodeId};
 use random::Rng;

@@ -8,7 +8,7 @@ use std::path::Path;
 use std::sync::Arc;
 
 use pca::Components;
-use physics_bridge::Model;
+use physics::Model;
 use policy_core::{CharacterPack, Mlp, NodeId};
 use rayon::prelude::*;
 

@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use clips::{Clip, FitError, TICK_STRIDE, fit};
 use glam::Vec3;
-use physics_bridge::Model;
+use physics::Model;
 use policy_core::{CharacterPack, CharacterState, Heading, NodeId, Skeleton};
 use serde::Serialize;
 
@@ -85,7 +85,7 @@ pub fn watch(model: &Model, pack: &Arc<CharacterPack>, node: NodeId) -> Vec<Char
 ///
 /// # Errors
 /// When the clip can't be fitted.
-pub fn clip_states(model: &Model, clip: &Clip) -> Result<Vec<CharacterState>, FitError> {
+pub fn clip_states(model: &physics_bridge::Model, clip: &Clip) -> Result<Vec<CharacterState>, FitError> {
     let fitted = fit(clip, model)?;
     let count = if clip.looping { 2 * fitted.states.len() } else { fitted.states.len() };
     let [x, y] = fitted.motion.cycle_offset.map(|o| o as f32);

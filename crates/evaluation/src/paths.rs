@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use physics_bridge::Model;
+use physics::Model;
 use policy_core::training::TARGET_RANGE_METRES;
 use policy_core::{BlendMode, CharacterPack, Goal, Heading, PathId};
 use random::Rng;

@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use physics_bridge::ModelError;
+use physics::ModelError;
 use policy_core::{PathId, SkillId};
 use serde::{Deserialize, Serialize};
 

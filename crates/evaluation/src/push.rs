@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use glam::Vec3;
-use physics_bridge::Model;
+use physics::{Model, PhysicsCharacter};
 use policy_core::{CharacterPack, NodeId};
 use random::Rng;
 use rayon::prelude::*;

@@ -4,7 +4,8 @@ use std::collections::BTreeMap;
 use std::sync::Arc;
 
 use glam::Vec3;
-use physics_bridge::{GroundKind, Model, ModelError};
+use physics::{Model, ModelError};
+use physics_bridge::GroundKind;
 use policy_core::{BlendMode, CharacterPack, CharacterState, ControllerConfig, NodeId, PathId, SkillId};
 use serde::Serialize;
 
@@ -18,6 +19,8 @@ use crate::response::commanded_mps;
 /// All measures of a pack.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct Evaluation {
+    /// Name of the engine that it was measured in.
+    pub engine: &'static str,
     /// By path, and in it by blend mode.
     #[serde(skip_serializing_if = "BTreeMap::is_empty")]
     pub paths: BTreeMap<String, PathReport>,
@@ -117,7 +120,7 @@ pub fn evaluate(
     clips: &BTreeMap<String, Vec<CharacterState>>,
     progress: &Progress,
 ) -> Result<Evaluation, ModelError> {
-    let mut evaluation = Evaluation::default();
+    let mut evaluation = Evaluation { engine: model.engine().name(), ..Evaluation::default() };
     let graph = pack.graph();
     for edge in graph.edges() {
         let [a, b] = edge.nodes;

@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 use std::sync::{Arc, Mutex, PoisonError};
 
-use physics_bridge::Model;
+use physics::Model;
 use policy_core::{CharacterPack, ControllerConfig};
 use rayon::prelude::*;
 

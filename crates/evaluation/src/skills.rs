@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use glam::Vec2;
-use physics_bridge::Model;
+use physics::{Model, PhysicsCharacter};
 use policy_core::training::TARGET_RANGE_METRES;
 use policy_core::{CharacterPack, CharacterState, Command, Goal, SkillEnd, SkillId};
 use random::Rng;

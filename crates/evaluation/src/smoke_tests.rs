@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
-use physics_bridge::Model;
+use physics::{Engine, Model};
 use policy_core::format::{
     DISCRIMINATOR_LAYOUT, EdgeEntry, EndEntry, Manifest, OBSERVATION_LAYOUT, PACK_FORMAT, PACK_VERSION,
     PathEntry, PolicyEntry, SkeletonEntry, SkillEntry,
@@ -114,8 +114,9 @@ fn pack(falls: bool) -> Arc<CharacterPack> {
     Arc::new(CharacterPack::from_parts(manifest, tensors).unwrap())
 }
 
-fn measured(falls: bool, effort: &Effort, sections: &[Section]) -> Evaluation {
-    let model = Model::from_mjcf(HUMANOID).unwrap();
+fn measured(engine: Engine, falls: bool, effort: &Effort, sections: &[Section]) -> Evaluation {
+    let model = physics_bridge::Model::from_mjcf(HUMANOID).unwrap();
+    let model = Model::new(&model, engine).unwrap();
     evaluate(
         &model,
         &pack(falls),
@@ -129,7 +130,7 @@ fn measured(falls: bool, effort: &Effort, sections: &[Section]) -> Evaluation {
 
 #[test]
 fn a_character_that_lies_on_the_ground_never_turns_and_has_all_keys() {
-    let evaluation = measured(false, &TINY, &PLAYER);
+    let evaluation = measured(Engine::Mujoco, false, &TINY, &PLAYER);
     let json = serde_json::to_value(&evaluation).unwrap();
     let read: PlayerReport = serde_json::from_value(json.clone()).unwrap();
     assert_eq!(table(&read), table(&evaluation.player), "a file says what was measured");
@@ -165,7 +166,7 @@ fn a_character_that_falls_on_the_way_to_a_gait_is_left_out_and_falls_are_counted
         Section::GetUp,
         Section::Pushes,
     ];
-    let report = measured(true, &effort, &sections).player;
+    let report = measured(Engine::Mujoco, true, &effort, &sections).player;
     assert!(report.response.turns["walk"]["turn_90"].trials == 0, "{:?}", report.response.turns);
     assert!(report.random_pad["stick"].falls_per_minute > 0.0, "{:?}", report.random_pad);
     assert!(report.terrain["steps_10cm"]["run"].falls > 0, "{:?}", report.terrain);
@@ -177,6 +178,23 @@ fn a_character_that_falls_on_the_way_to_a_gait_is_left_out_and_falls_are_counted
 #[test]
 fn a_measure_repeats_itself() {
     let sections = [Section::Starts, Section::Buttons, Section::RandomPad, Section::Robustness];
-    let measure = || measured(false, &TINY, &sections);
+    let measure = || measured(Engine::Mujoco, false, &TINY, &sections);
     assert_eq!(measure(), measure());
+}
+
+/// No section is left out in the other engine, and it measures no less.
+#[test]
+fn every_section_of_a_player_is_measured_in_rapier_too() {
+    let [rapier, mujoco] =
+        [Engine::Rapier, Engine::Mujoco].map(|engine| measured(engine, false, &TINY, &PLAYER));
+    assert_eq!((rapier.engine, mujoco.engine), ("rapier", "mujoco"));
+    let keys = |evaluation: &Evaluation| -> Vec<String> {
+        let json = serde_json::to_value(evaluation).unwrap();
+        json.as_object().unwrap().keys().cloned().collect()
+    };
+    assert_eq!(keys(&rapier), keys(&mujoco));
+    let player = &rapier.player;
+    assert!(player.terrain["hills_35cm"]["walk"].minutes > 0.0 && player.push_torso.len() == 5);
+    assert_eq!(player.robustness.len(), mujoco.player.robustness.len());
+    assert!(player.foot_slide_mps["walk"].is_finite());
 }

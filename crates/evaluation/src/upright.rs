@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use glam::Vec2;
-use physics_bridge::Model;
+use physics::Model;
 use policy_core::training::TARGET_RANGE_METRES;
 use policy_core::{CharacterPack, Command, Goal, NodeId};
 use random::Rng;

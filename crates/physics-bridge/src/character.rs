@@ -4,6 +4,7 @@ mod contact;
 mod control;
 mod diverged;
 mod history;
+mod physics_character;
 mod plausibility;
 mod push;
 mod replay_file;

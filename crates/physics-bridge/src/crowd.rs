@@ -6,16 +6,17 @@ mod worlds;
 
 use std::num::NonZeroUsize;
 
+use policy_core::contract::PhysicsCharacter;
 use policy_core::{CharacterState, JointTargets};
 use rayon::prelude::*;
 use rayon::{ThreadPool, ThreadPoolBuilder};
 
 use self::control::Batch;
-use crate::character::{Character, Diverged};
+use crate::character::Character;
 
 pub use self::worlds::Worlds;
 
-/// Characters that are ticked together.
+/// Characters that are ticked together, of this crate or of another physics.
 ///
 /// [`Crowd::control_tick`] runs controllers. The other ways to tick are for policies of the caller's own.
 ///
@@ -36,18 +37,19 @@ pub use self::worlds::Worlds;
 /// # }
 /// ```
 #[derive(Debug)]
-pub struct Crowd {
-    members: Vec<Member>,
+pub struct Crowd<C: PhysicsCharacter = Character> {
+    members: Vec<Member<C>>,
     batches: Vec<Batch>,
     pool: ThreadPool,
 }
 
 /// A character, and what a tick of it needs.
 #[derive(Debug)]
-struct Member {
-    character: Character,
+struct Member<C: PhysicsCharacter> {
+    character: C,
+    sensed: CharacterState,
     targets: JointTargets,
-    failure: Option<Diverged>,
+    failure: Option<C::Diverged>,
 }
 
 /// Why a crowd can't be made.
@@ -71,16 +73,17 @@ fn threads(count: Option<NonZeroUsize>) -> Result<ThreadPool, CrowdError> {
         .map_err(|source| CrowdError::Threads { source })
 }
 
-impl Crowd {
+impl<C: PhysicsCharacter + Send> Crowd<C> {
     /// A crowd of `characters` on `threads`, by default one for every core. Allocates; ticks only where they say.
     ///
     /// # Errors
     /// When the system gives no threads.
-    pub fn new(characters: Vec<Character>, threads: Option<NonZeroUsize>) -> Result<Self, CrowdError> {
+    pub fn new(characters: Vec<C>, threads: Option<NonZeroUsize>) -> Result<Self, CrowdError> {
         let pool = self::threads(threads)?;
-        let member = |character: Character| {
-            let targets = JointTargets::new(character.model().skeleton());
-            Member { character, targets, failure: None }
+        let member = |character: C| {
+            let sensed = CharacterState::new(character.skeleton());
+            let targets = JointTargets::new(character.skeleton());
+            Member { character, sensed, targets, failure: None }
         };
         Ok(Self { members: characters.into_iter().map(member).collect(), batches: Vec::new(), pool })
     }
@@ -104,12 +107,12 @@ impl Crowd {
     }
 
     /// The characters.
-    pub fn characters(&self) -> impl ExactSizeIterator<Item = &Character> {
+    pub fn characters(&self) -> impl ExactSizeIterator<Item = &C> {
         self.members.iter().map(|member| &member.character)
     }
 
     /// The characters, to pose or push them.
-    pub fn characters_mut(&mut self) -> impl ExactSizeIterator<Item = &mut Character> {
+    pub fn characters_mut(&mut self) -> impl ExactSizeIterator<Item = &mut C> {
         self.members.iter_mut().map(|member| &mut member.character)
     }
 
@@ -118,7 +121,7 @@ impl Crowd {
     /// # Panics
     /// When there is none of that index.
     #[must_use]
-    pub fn character(&self, index: usize) -> &Character {
+    pub fn character(&self, index: usize) -> &C {
         &self.members[index].character
     }
 
@@ -126,12 +129,12 @@ impl Crowd {
     ///
     /// # Panics
     /// When there is none of that index.
-    pub fn character_mut(&mut self, index: usize) -> &mut Character {
+    pub fn character_mut(&mut self, index: usize) -> &mut C {
         &mut self.members[index].character
     }
 
     /// Characters that diverged in the last tick, with their index. Each is in its state before that tick.
-    pub fn diverged(&self) -> impl Iterator<Item = (usize, &Diverged)> {
+    pub fn diverged(&self) -> impl Iterator<Item = (usize, &C::Diverged)> {
         self.members.iter().enumerate().filter_map(|(index, member)| Some((index, member.failure.as_ref()?)))
     }
 
@@ -145,7 +148,7 @@ impl Crowd {
         F: Fn(usize, &CharacterState, &mut JointTargets) + Sync,
     {
         self.pool.install(|| {
-            let run = |(index, member): (usize, &mut Member)| {
+            let run = |(index, member): (usize, &mut Member<C>)| {
                 member.tick(|state, targets| policy(index, state, targets))
             };
             self.members.par_iter_mut().enumerate().map(run).sum()
@@ -156,14 +159,14 @@ impl Crowd {
     ///
     /// # Panics
     /// When there are not as many `controllers` as characters, or when `policy` panics.
-    pub fn tick_with<C, F>(&mut self, controllers: &mut [C], policy: F) -> usize
+    pub fn tick_with<O, F>(&mut self, controllers: &mut [O], policy: F) -> usize
     where
-        C: Send,
-        F: Fn(usize, &mut C, &CharacterState, &mut JointTargets) + Sync,
+        O: Send,
+        F: Fn(usize, &mut O, &CharacterState, &mut JointTargets) + Sync,
     {
         assert_eq!(controllers.len(), self.members.len(), "one controller for each character");
         self.pool.install(|| {
-            let run = |(index, (member, controller)): (usize, (&mut Member, &mut C))| {
+            let run = |(index, (member, controller)): (usize, (&mut Member<C>, &mut O))| {
                 member.tick(|state, targets| policy(index, controller, state, targets))
             };
             self.members.par_iter_mut().zip(controllers).enumerate().map(run).sum()
@@ -174,7 +177,11 @@ impl Crowd {
     ///
     /// # Panics
     /// When there are not as many `states` as characters.
-    pub fn sense_into(&self, states: &mut [CharacterState]) {
+    pub fn sense_into(&self, states: &mut [CharacterState])
+    where
+        C: Sync,
+        C::Diverged: Sync,
+    {
         assert_eq!(states.len(), self.members.len(), "one state for each character");
         self.pool.install(|| {
             self.members
@@ -194,13 +201,17 @@ impl Crowd {
     }
 }
 
-impl Member {
+impl<C: PhysicsCharacter> Member<C> {
     fn tick(&mut self, policy: impl FnOnce(&CharacterState, &mut JointTargets)) -> usize {
-        self.character.sense();
+        self.sense();
         self.targets.fill(0.0);
-        policy(self.character.sensed(), &mut self.targets);
+        policy(&self.sensed, &mut self.targets);
         self.character.actuate(&self.targets);
         self.finish()
+    }
+
+    fn sense(&mut self) {
+        self.character.sense_into(&mut self.sensed);
     }
 
     fn step(&mut self, targets: &[f32]) -> usize {

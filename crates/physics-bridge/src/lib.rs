@@ -52,7 +52,6 @@ pub use character::{
 pub use crowd::{Crowd, CrowdError, Worlds};
 pub use description::body_poses::BodyPoses;
 pub use description::fixture::{Fixture, FixtureShape, MAX_HEIGHTS, MAX_TRIANGLES, TRIANGLE_DEPTH_M};
-pub use description::ground::HeightField;
 pub use description::ground_kind::GroundKind;
 pub use description::joint::{DAMPING_RANGE, Joint, ROPE_RANGE_M};
 pub use description::model::Model;
@@ -60,14 +59,13 @@ pub use description::model_error::ModelError;
 pub use description::prop::{
     FRICTION_RANGE, MASS_RANGE_KG, MAX_HULL_POINTS, Motion, Prop, SIZE_RANGE_M, Solid,
 };
-pub use description::settings::Settings;
 pub use description::shape::{Shape, ShapeKind};
 pub use description::terrain::Terrain;
 pub use description::world_error::WorldError;
 /// What policy-core says of every physics of a character.
 pub use policy_core::contract::{
-    CONTROL_HZ, MAX_DEPTH_M, MAX_DISTANCE_M, MAX_PUSHED_MPS, MAX_SPEED_MPS, MAX_SPIN_RADPS, Pose, PoseError,
-    PushError, WALKING_START_MPS,
+    CONTROL_HZ, HeightField, MAX_DEPTH_M, MAX_DISTANCE_M, MAX_PUSHED_MPS, MAX_SPEED_MPS, MAX_SPIN_RADPS,
+    PhysicsCharacter, Pose, PoseError, PushError, SettingError, Settings, WALKING_START_MPS,
 };
 pub use ring::NotRecorded;
 pub use world::{

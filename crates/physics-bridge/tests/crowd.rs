@@ -109,7 +109,7 @@ fn one_that_diverges_leaves_the_others_alone() {
 
 #[test]
 fn an_empty_crowd_ticks() {
-    let mut crowd = Crowd::new(Vec::new(), None).unwrap();
+    let mut crowd: Crowd = Crowd::new(Vec::new(), None).unwrap();
     assert!(crowd.is_empty());
     assert_eq!(crowd.tick(|_, _, _| ()), 0);
 }

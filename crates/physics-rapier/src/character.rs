@@ -2,20 +2,23 @@
 
 mod diverged;
 mod ground;
+mod physics_character;
 mod push;
+mod save;
 
 use policy_core::contract::{Pose, PoseError};
+use policy_core::glam::Vec3;
 use policy_core::{BodyId, CharacterState, Command, Controller, Heading};
-use rapier3d::math::Vector;
 use rapier3d::pipeline::PhysicsWorld;
 
 use crate::articulation::{Articulation, Drive, PlaceError, Sets};
 use crate::model::Model;
 
-use self::ground::{height_at, motor_steps, world};
+use self::ground::{motor_steps, world};
 use self::push::Pushes;
 
 pub use self::diverged::{Cause, Diverged};
+pub use self::save::{ModelMismatch, Snapshot, SnapshotMismatch};
 
 /// Why a whole character can't lose a part here: its world is only read from outside.
 const WHOLE: &str = "the parts of a character stay in its own world";
@@ -135,7 +138,11 @@ impl Character {
         articulation.pose_into(&world.bodies, &world.multibody_joints, &mut self.before).expect(WHOLE);
         for _ in 0..self.steps {
             articulation.before_step(&mut world.bodies, &mut world.multibody_joints).expect(WHOLE);
-            self.pushes.apply(&mut world.bodies, articulation.bodies(), world.integration_parameters.dt);
+            if self.pushes.are_under_way() {
+                sense_into(world, articulation, &mut self.after);
+                let (bodies, dt_secs) = (&mut world.bodies, world.integration_parameters.dt);
+                self.pushes.apply(bodies, articulation.bodies(), &self.after, dt_secs);
+            }
             world.step();
         }
         sense_into(world, articulation, &mut self.after);
@@ -195,7 +202,7 @@ impl Character {
     /// # Errors
     /// When a number is not finite; the character is then unchanged.
     pub fn stand_at(&mut self, x: f32, y: f32, heading: Heading, speed_mps: f32) -> Result<(), PoseError> {
-        let point = [x, y, height_at(&self.world, x, y)];
+        let point = [x, y, self.model().height_at(x, y)];
         match self.articulation.stand_at(&mut Sets::from(&mut self.world), point, heading, speed_mps) {
             Ok(()) => {}
             Err(PlaceError::Pose(error)) => return Err(error),
@@ -220,13 +227,13 @@ impl Character {
 
     /// Centre of mass of the whole character, metres, world space.
     #[must_use]
-    pub fn centre_of_mass(&self) -> policy_core::glam::Vec3 {
+    pub fn centre_of_mass(&self) -> Vec3 {
         let bodies = self.articulation.bodies().iter().map(|&body| &self.world.bodies[body]);
-        let (sum, mass) = bodies.fold((Vector::ZERO, 0.0), |(sum, mass), body| {
+        let (sum, mass) = bodies.fold((Vec3::ZERO, 0.0), |(sum, mass), body| {
             let centre = *body.position() * body.mass_properties().local_mprops.local_com;
             (sum + body.mass() * centre, mass + body.mass())
         });
-        crate::convert::vec3(sum / mass)
+        sum / mass
     }
 
     /// True while a push acts on `body`, or an impulse waits for the next physics step.
@@ -237,8 +244,13 @@ impl Character {
 
     /// A new world with the character in this pose.
     fn restart(&mut self, qpos: &[f64], qvel: &[f64]) {
-        let drive = self.articulation.drive();
-        let (world, articulation) = world(self.articulation.model(), drive);
+        let model = self.model().clone();
+        self.restart_as(&model, qpos, qvel);
+    }
+
+    /// The same, of another model of its body.
+    fn restart_as(&mut self, model: &Model, qpos: &[f64], qvel: &[f64]) {
+        let (world, articulation) = world(model, self.articulation.drive());
         (self.world, self.articulation) = (world, articulation);
         self.articulation
             .set_pose(&mut Sets::from(&mut self.world), qpos, qvel)
@@ -255,5 +267,5 @@ impl std::fmt::Debug for Character {
 fn sense_into(world: &PhysicsWorld, articulation: &Articulation, out: &mut CharacterState) {
     articulation.sense_into(&world.bodies, &world.multibody_joints, 0.0, out).expect(WHOLE);
     let root = out.root().position;
-    out.ground_height = height_at(world, root.x, root.y);
+    out.ground_height = articulation.model().height_at(root.x, root.y);
 }

@@ -25,8 +25,7 @@
 //!
 //! # Conventions
 //! SI units, radians, world space with z up. Bodies and hinges are in the order of the skeleton. [`Pose`] is laid out
-//! as MuJoCo does, quaternions wxyz. Rapier uses another version of glam than policy-core: only the types of
-//! [`rapier3d`] appear where a game's world is meant, and only policy-core's elsewhere.
+//! as MuJoCo does, quaternions wxyz. Rapier's vectors and rotations are policy-core's: both use one version of glam.
 //!
 //! # What is done about Rapier
 //! | Rapier and its MJCF loader | here |
@@ -37,6 +36,7 @@
 //! | let limbs touch each other | they do not; characters touch each other |
 //! | damp a free root, let links sleep | neither |
 //! | have rigid joint limits | limits are as soft as MuJoCo's default ones |
+//! | hold a foot in every direction alike | friction is 0.8 of the MJCF's, the mean of MuJoCo's pyramid |
 //! | lose impulses on links | pushes and impulses are forces |
 //! | read the files that an MJCF names | such an MJCF is refused |
 //!
@@ -48,20 +48,19 @@
 
 mod articulation;
 mod character;
-mod convert;
 mod mjcf;
 mod model;
 mod model_error;
 mod skeleton;
 
 pub use articulation::{Articulation, Drive, PlaceError, Removed, Sets};
-pub use character::{Cause, Character, Diverged};
+pub use character::{Cause, Character, Diverged, ModelMismatch, Snapshot, SnapshotMismatch};
 pub use model::Model;
 pub use model_error::ModelError;
 /// What policy-core says of every physics of a character.
 pub use policy_core::contract::{
-    CONTROL_HZ, MAX_DEPTH_M, MAX_DISTANCE_M, MAX_SPEED_MPS, MAX_SPIN_RADPS, Pose, PoseError, PushError,
-    WALKING_START_MPS,
+    CONTROL_HZ, HeightField, MAX_DEPTH_M, MAX_DISTANCE_M, MAX_PUSHED_MPS, MAX_SPEED_MPS, MAX_SPIN_RADPS,
+    PhysicsCharacter, Pose, PoseError, PushError, SettingError, Settings, WALKING_START_MPS,
 };
 /// Rapier as this crate uses it.
 pub use rapier3d;

@@ -1,14 +1,21 @@
-//! What every physics of a character has in common: poses, pushes, the control rate, and limits of plausible motion.
+//! What every physics of a character has in common: poses, pushes, settings, uneven ground, the control rate, and limits
+//! of plausible motion. [`PhysicsCharacter`] is one character, whatever the engine.
 //!
 //! The physics crates of this project export these names. An engine of your own can use them to behave alike.
 
+mod height_field;
+mod physics_character;
 mod pose;
 mod push;
+mod settings;
 
+pub use height_field::{HeightField, HeightFieldError};
+pub use physics_character::PhysicsCharacter;
 pub use pose::{Pose, PoseError, ROOT_QPOS, ROOT_QVEL};
 pub use push::{
     MAX_FORCE_N, MAX_IMPULSE_NS, MAX_PUSH_SECS, MAX_PUSHED_MPS, PushError, check_impulse, check_push,
 };
+pub use settings::{SettingError, Settings};
 
 /// Control ticks per second, unless a pack says otherwise.
 pub const CONTROL_HZ: u32 = 30;

@@ -1,7 +1,7 @@
 //! Limp characters: dropped in a random attitude, with motors that follow the joints.
 
 use glam::{EulerRot, Quat, Vec2};
-use physics_bridge::{Character, Pose, PoseError};
+use policy_core::contract::{PhysicsCharacter, Pose, PoseError};
 
 use crate::Rng;
 
@@ -22,10 +22,13 @@ pub const REST_SECS: f32 = 2.0;
 ///
 /// # Errors
 /// When the place is not finite.
-pub fn lift_anyhow(character: &mut Character, place: Vec2, rng: &mut Rng) -> Result<(), PoseError> {
-    let model = character.model();
-    let skeleton = model.skeleton().clone();
-    let height = model.height_at(place.x, place.y) + DROP_METRES;
+pub fn lift_anyhow(
+    character: &mut impl PhysicsCharacter,
+    place: Vec2,
+    rng: &mut Rng,
+) -> Result<(), PoseError> {
+    let skeleton = character.skeleton().clone();
+    let height = character.height_at(place.x, place.y) + DROP_METRES;
     let turn = random_attitude(rng);
     let mut pose = Pose::new(&skeleton);
     pose.qpos[..3].copy_from_slice(&[place.x, place.y, height].map(f64::from));
@@ -39,11 +42,11 @@ pub fn lift_anyhow(character: &mut Character, place: Vec2, rng: &mut Rng) -> Res
 /// Drops a limp character in a random attitude at a place, metres, and steps it until it has come to rest, for
 /// [`REST_SECS`]. False when the physics diverged or the place is not finite.
 #[must_use]
-pub fn drop_limp(character: &mut Character, place: Vec2, rng: &mut Rng) -> bool {
+pub fn drop_limp(character: &mut impl PhysicsCharacter, place: Vec2, rng: &mut Rng) -> bool {
     if lift_anyhow(character, place, rng).is_err() {
         return false;
     }
-    let ticks = (REST_SECS * character.model().control_hz()).round() as u32;
+    let ticks = (REST_SECS * character.control_hz()).round() as u32;
     (0..ticks).all(|_| {
         go_limp(character);
         character.step().is_ok()
@@ -51,7 +54,7 @@ pub fn drop_limp(character: &mut Character, place: Vec2, rng: &mut Rng) -> bool 
 }
 
 /// Sets targets that follow the joints: nearly no torque but the joints' damping.
-pub fn go_limp(character: &mut Character) {
+pub fn go_limp(character: &mut impl PhysicsCharacter) {
     let targets: Vec<f32> = character.pose().qpos[7..].iter().map(|angle| *angle as f32).collect();
     character.actuate(&targets);
 }
@@ -60,7 +63,7 @@ pub fn go_limp(character: &mut Character) {
 mod tests {
     use std::path::Path;
 
-    use physics_bridge::Model;
+    use physics_bridge::{Character, Model};
     use policy_core::CharacterState;
 
     use super::*;

@@ -5,12 +5,12 @@ mod common;
 use common::app_with;
 use common::harness::{click, harness, open};
 use egui::accesskit::Role;
-use egui_kittest::kittest::Queryable as _;
+use egui_kittest::kittest::{NodeT as _, Queryable as _};
 use policy_core::{Blend, BlendMode, Button, Goal, NodeId, SkillId};
 use viewer::analysis::Analysis;
 use viewer::app::{Failure, PanelKind, Preset, Record, ViewerCommand};
 use viewer::camera::CameraMode;
-use viewer::sim::GroundKind;
+use viewer::sim::{Engine, GhostKind, GroundKind};
 
 #[test]
 fn the_graph_sends_the_character_to_a_node() {
@@ -58,10 +58,33 @@ fn the_blend_mode_changes_and_a_ghost_comes_and_goes() {
     harness.run_steps(2);
     assert_eq!(harness.state().sim.blend_mode(), BlendMode::Actions);
     click(&mut harness, "ghost: switch");
-    assert_eq!(harness.state().sim.ghost().map(|g| g.mode()), Some(BlendMode::Switch));
+    assert_eq!(harness.state().sim.ghost().map(|g| g.kind()), Some(GhostKind::Mode(BlendMode::Switch)));
     harness.state_mut().tick();
     click(&mut harness, "no ghost");
     assert!(harness.state().sim.ghost().is_none());
+}
+
+#[test]
+fn the_physics_panel_changes_the_engine_and_greys_what_it_lacks() {
+    let mut harness = open(PanelKind::Physics);
+    harness.run_steps(2);
+    harness.get_by_role_and_label(Role::CheckBox, "Ghost in Rapier").click();
+    harness.run_steps(2);
+    let ghost = |harness: &egui_kittest::Harness<'_, _>| {
+        let app: &viewer::app::App = harness.state();
+        app.sim.ghost().map(|g| g.kind())
+    };
+    assert_eq!(ghost(&harness), Some(GhostKind::Engine(Engine::Rapier)));
+    assert!(!harness.get_by_role_and_label(Role::Button, "Step back").accesskit_node().is_disabled());
+    click(&mut harness, "Rapier");
+    assert_eq!((harness.state().sim.engine(), ghost(&harness)), (Engine::Rapier, None));
+    assert!(harness.get_by_role_and_label(Role::Button, "Step back").accesskit_node().is_disabled());
+    harness.state_mut().apply(ViewerCommand::StepBack);
+    assert!(!harness.state().clock.paused && harness.state().notice.as_ref().unwrap().contains("Rapier"));
+    harness.get_by_role_and_label(Role::CheckBox, "Ghost in MuJoCo").click();
+    harness.run_steps(2);
+    harness.state_mut().tick();
+    assert_eq!(ghost(&harness), Some(GhostKind::Engine(Engine::Mujoco)));
 }
 
 #[test]

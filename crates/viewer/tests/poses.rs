@@ -6,11 +6,12 @@ use std::path::Path;
 use std::process::Command;
 
 use common::{gpu, simulation};
+use physics::PhysicsCharacter as _;
 use physics_bridge::Pose;
 use policy_core::{BlendMode, GamepadState, Heading};
 use viewer::app::{App, PanelLayout, ViewerCommand};
 use viewer::pose_clip::{POSES_FORMAT, PoseClip, PoseClipError};
-use viewer::sim::{Playback, Simulation};
+use viewer::sim::{GhostKind, Playback, Simulation};
 
 /// Numbers of a pose of the humanoid.
 const QPOS_LEN: usize = 35;
@@ -149,7 +150,7 @@ fn a_clip_can_be_paused_but_not_steered() {
     write(&path, 30.0, &[pose(&sim, 0.0, 0.0), pose(&sim, 0.5, 0.0)]);
     sim.play(Playback::load(&path, sim.model()).unwrap());
     let mut app = App::new(sim, PanelLayout::default());
-    app.apply(ViewerCommand::Ghost(Some(BlendMode::Switch)));
+    app.apply(ViewerCommand::Ghost(Some(GhostKind::Mode(BlendMode::Switch))));
     assert!(app.notice.take().is_some_and(|n| n.contains("A clip is shown")));
     assert!(app.sim.ghost().is_none());
     app.apply(ViewerCommand::Characters(4));

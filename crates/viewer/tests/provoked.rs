@@ -5,6 +5,7 @@ mod common;
 
 use common::simulation;
 use glam::{Vec2, Vec3};
+use physics::PhysicsCharacter as _;
 use physics_bridge::{MAX_DISTANCE_M, Settings};
 use policy_core::{BodyId, Buttons, GamepadState, Heading};
 use viewer::app::{App, PanelLayout, ViewerCommand};

@@ -5,6 +5,7 @@ mod common;
 use std::sync::Arc;
 
 use common::{pack_with_skills, simulation, simulation_of};
+use physics::PhysicsCharacter as _;
 use physics_bridge::Pose;
 use policy_core::{Button, GamepadState, Heading, TickReport};
 use viewer::sim::{SHOVE_BUTTON, Simulation};

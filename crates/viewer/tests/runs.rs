@@ -47,6 +47,18 @@ fn two_runs_have_the_same_state_and_a_whole_report() {
     assert!(left.iter().all(|name| ["a.json", "b", "c.json"].contains(&name.as_str())), "{left:?}");
 }
 
+#[test]
+fn a_run_in_rapier_walks_as_far_and_repeats_itself() {
+    let folder = tempfile::tempdir().unwrap();
+    let mujoco = report(folder.path(), "m.json", &[]);
+    let [rapier, again] =
+        ["r.json", "s.json"].map(|name| report(folder.path(), name, &["--physics", "rapier", "--ghost"]));
+    assert_eq!((&rapier["physics"], &mujoco["physics"]), (&"rapier".into(), &"mujoco".into()));
+    assert_eq!(rapier["state_hash"], again["state_hash"]);
+    let metres = |report: &serde_json::Value| report["distance_m"].as_f64().unwrap();
+    assert!(metres(&rapier) > 0.6 * metres(&mujoco) && rapier["falls"] == 0, "{rapier} {mujoco}");
+}
+
 /// Five seconds of a DualShock 4 on its cable: at rest until it is calibrated, then the left stick forward.
 fn recording() -> Vec<u8> {
     use gamepad::recording::{PadEvent, RecordedPad, Recorder};

@@ -8,6 +8,7 @@ use common::{SCORE, pack_with_skills, simulation_of};
 use egui::accesskit::Role;
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable as _;
+use physics::PhysicsCharacter as _;
 use policy_core::{SkillEnd, SkillId};
 use viewer::app::{App, PanelKind, PanelLayout, Side};
 

@@ -4,10 +4,11 @@ mod common;
 
 use common::simulation;
 use image::{Rgba, RgbaImage};
+use physics::PhysicsCharacter as _;
 use physics_bridge::Settings;
-use policy_core::{BlendMode, GamepadState, Heading};
+use policy_core::{BlendMode, Buttons, GamepadState, Heading};
 use viewer::recorder::{Kind, Recorder};
-use viewer::sim::{LIE_SECS, SHOVE_BUTTON, SimConfig, SimError, Simulation};
+use viewer::sim::{Engine, GhostKind, GroundKind, LIE_SECS, SHOVE_BUTTON, SimConfig, SimError, Simulation};
 
 const FORWARD: GamepadState = GamepadState {
     left_stick: [0.0, 1.0],
@@ -31,14 +32,61 @@ fn run(sim: &mut Simulation, ticks: usize) {
 fn a_ghost_under_the_same_mode_does_the_same_and_under_another_does_not() {
     let mut sim = simulation();
     run(&mut sim, 20);
-    sim.start_ghost(BlendMode::Parameters);
+    sim.start_ghost(GhostKind::Mode(BlendMode::Parameters)).unwrap();
     run(&mut sim, 40);
     assert_eq!(sim.ghost_poses(1.0), Some(sim.player().poses(1.0)));
     let mut sim = simulation();
     run(&mut sim, 20);
-    sim.start_ghost(BlendMode::Switch);
+    sim.start_ghost(GhostKind::Mode(BlendMode::Switch)).unwrap();
     run(&mut sim, 40);
     assert_ne!(sim.ghost_poses(1.0), Some(sim.player().poses(1.0)));
+}
+
+/// A world like another, in Rapier.
+fn in_rapier() -> Simulation {
+    let mut sim = simulation();
+    sim.rebuild(SimConfig { engine: Engine::Rapier, ..*sim.config() }).unwrap();
+    sim
+}
+
+#[test]
+fn a_ghost_in_the_other_engine_walks_along_and_ends() {
+    for mut sim in [simulation(), in_rapier()] {
+        let other = sim.engine().other();
+        run(&mut sim, 20);
+        sim.start_ghost(GhostKind::Engine(other)).unwrap();
+        assert_eq!(sim.ghost().unwrap().kind(), GhostKind::Engine(other));
+        let start = sim.ghost_poses(1.0).unwrap().positions[0];
+        assert!((start - sim.player().poses(1.0).positions[0]).length() < 1e-4, "from the same state");
+        run(&mut sim, 30);
+        let (ghost, player) = (sim.ghost_poses(1.0).unwrap().positions[0], sim.player().position());
+        assert!(ghost.truncate().distance(start.truncate()) > 0.3, "it walks in {}", other.title());
+        assert!(ghost.truncate().distance(player) < 0.5, "beside the player");
+        assert_ne!(ghost, sim.player().poses(1.0).positions[0], "other contacts, another way");
+        sim.set_settings(Settings { gravity: 0.5, ..Settings::default() }).unwrap();
+        run(&mut sim, 3);
+        sim.stop_ghost();
+        assert!(sim.ghost().is_none());
+    }
+}
+
+#[test]
+fn a_world_in_rapier_walks_on_hills_is_shoved_and_keeps_no_history() {
+    let mut sim = in_rapier();
+    sim.rebuild(SimConfig { characters: 2, ground: GroundKind::Wavy, ..*sim.config() }).unwrap();
+    assert_eq!(sim.engine(), Engine::Rapier);
+    run(&mut sim, 45);
+    assert!(sim.player().position().length() > 0.3, "{}", sim.player().position());
+    assert_eq!(sim.history(), (0, 0));
+    let there = sim.character(0).pose();
+    sim.rewind_to(10);
+    assert_eq!(sim.character(0).pose(), there);
+    let shove = GamepadState { buttons: Buttons::NONE.with(SHOVE_BUTTON), ..FORWARD };
+    assert!(sim.tick(&shove, Heading::FORWARD).is_empty());
+    let torso = sim.model().skeleton().body_named("torso").unwrap();
+    assert!(sim.character(0).is_pushed(torso));
+    sim.reset();
+    assert!(sim.player().position().length() < 0.05 && !sim.character(0).is_pushed(torso));
 }
 
 #[test]

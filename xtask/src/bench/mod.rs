@@ -2,6 +2,7 @@
 //!
 //! With `--json` nothing but that object goes to stdout; what cargo and criterion say goes to stderr.
 
+mod engines;
 mod estimates;
 mod peers;
 mod policy;
@@ -54,6 +55,12 @@ enum Subject {
         #[arg(long)]
         json: bool,
     },
+    /// Microseconds of a physics step in Rapier and in MuJoCo, and of the Bevy plug-in's tick with 1 and 20 characters.
+    Engines {
+        /// Print one JSON object: rapier_step_us, mujoco_step_us, bevy_tick_us_1, bevy_tick_us_20.
+        #[arg(long)]
+        json: bool,
+    },
     /// How many frames a second are drawn off screen.
     Frame {
         /// Print one JSON object: fps_1, fps_100, adapter.
@@ -71,6 +78,7 @@ pub fn run(workspace: &Workspace, arguments: &BenchArgs) -> Result<()> {
     let (json, figures) = match arguments.subject {
         Subject::Policy { json, no_peers } => (json, policy::measure(workspace, !no_peers)?),
         Subject::Training { json } => (json, training::measure(workspace)?),
+        Subject::Engines { json } => (json, engines::measure(workspace)?),
         Subject::Crowd { json } => {
             let promised = ["characters_realtime", "bare_mujoco_characters", "policy_share"];
             (json, demo_bench(workspace, "bench-crowd", &promised)?)

@@ -95,7 +95,8 @@ fn watch(rig: &Rig<'_>, from: &Settled) -> Option<Watched> {
 /// How deep a shin or foot is inside one of another leg, metres; negative or 0 when they are apart.
 fn legs_depth(trial: &Trial, legs: &[Leg]) -> f32 {
     let shapes_of = |leg: &Leg| -> Vec<PlacedShape> {
-        let shapes = trial.character.model().shapes().iter().filter(|shape| leg.contains(shape.body));
+        let shapes =
+            trial.character.model().described().shapes().iter().filter(|shape| leg.contains(shape.body));
         shapes.map(|shape| PlacedShape::new(shape, trial.state.body(shape.body))).collect()
     };
     let placed: Vec<Vec<PlacedShape>> = legs.iter().map(shapes_of).collect();

@@ -2,7 +2,7 @@
 
 use glam::Vec3;
 use physics_bridge::{Shape, ShapeKind};
-use policy_core::{BodyId, BodyState};
+use policy_core::BodyState;
 
 use crate::trial::Trial;
 
@@ -22,10 +22,11 @@ pub struct FootSlide {
 impl FootSlide {
     /// Takes the tick that a trial has just had.
     pub fn tick(&mut self, trial: &Trial) {
-        let weight = trial.character.model().mass_kg() as f32 * GRAVITY;
+        let weight = trial.character.model().described().mass_kg() as f32 * GRAVITY;
         for &foot in trial.controller.pack().skeleton().feet() {
-            if load(trial, foot) >= LEAST_LOAD * weight {
-                let shapes = trial.character.model().shapes().iter().filter(|shape| shape.body == foot);
+            if trial.character.ground_load(foot) >= LEAST_LOAD * weight {
+                let shapes =
+                    trial.character.model().described().shapes().iter().filter(|shape| shape.body == foot);
                 self.add(lowest_point_velocity(shapes, trial.state.body(foot)));
             }
         }
@@ -42,15 +43,6 @@ impl FootSlide {
     pub fn mean_mps(&self) -> f32 {
         self.sum_mps / self.count.max(1) as f32
     }
-}
-
-/// Vertical force of the ground on a body, newton.
-fn load(trial: &Trial, body: BodyId) -> f32 {
-    let contacts = trial.character.contacts().iter();
-    contacts
-        .filter(|contact| contact.body == body && contact.other.is_none())
-        .map(|contact| contact.force.z)
-        .sum()
 }
 
 /// Velocity of the lowest point of the shapes of a body, metres per second.
@@ -79,6 +71,7 @@ fn lowest_point(shape: &Shape, body: &BodyState) -> Vec3 {
 mod tests {
     use super::*;
     use glam::Quat;
+    use policy_core::BodyId;
 
     const SOLE: Shape = Shape {
         body: BodyId::new(0),

@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 
 use glam::Vec2;
-use physics_bridge::{Model, ModelError};
+use physics::{Model, ModelError, PhysicsCharacter};
 use policy_core::SkillId;
 use random::Rng;
 use random::limp::drop_limp;

@@ -3,6 +3,7 @@
 use std::collections::BTreeMap;
 
 use glam::Vec3;
+use physics::PhysicsCharacter;
 use policy_core::BodyId;
 use serde::{Deserialize, Serialize};
 

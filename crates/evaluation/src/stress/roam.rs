@@ -4,7 +4,7 @@
 use std::f32::consts::FRAC_PI_2;
 
 use glam::Vec2;
-use physics_bridge::Model;
+use physics::Model;
 use random::Rng;
 use serde::{Deserialize, Serialize};
 

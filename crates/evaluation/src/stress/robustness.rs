@@ -2,7 +2,8 @@
 
 use std::collections::BTreeMap;
 
-use physics_bridge::{Model, ModelError, Settings};
+use physics::{Model, ModelError};
+use policy_core::contract::Settings;
 
 use super::roam::{FallReport, roam};
 use crate::Rig;
@@ -77,13 +78,14 @@ pub(crate) const CASE_COUNT: usize = CASES.len();
 fn changed(model: &Model, change: Change) -> Result<Model, ModelError> {
     match change {
         Change::Settings(change) => {
-            let mut settings = model.settings();
+            let mut settings = model.described().settings();
             change(&mut settings);
             model.with_settings(settings)
         }
         Change::Attribute(name, factor) => {
-            let text = scaled(model.mjcf(), name, factor);
-            Model::from_mjcf_with_skeleton(&text, model.skeleton().clone())
+            let text = scaled(model.described().mjcf(), name, factor);
+            let described = physics_bridge::Model::from_mjcf_with_skeleton(&text, model.skeleton().clone())?;
+            Model::new(&described, model.engine())
         }
         Change::Nothing | Change::LateTick | Change::Noise => Ok(model.clone()),
     }
@@ -104,6 +106,8 @@ fn scaled(mjcf: &str, attribute: &str, factor: f64) -> String {
 
 #[cfg(test)]
 mod tests {
+    use physics::Engine;
+
     use super::*;
 
     const HUMANOID: &str = include_str!("../../../../assets/humanoid.xml");
@@ -120,9 +124,11 @@ mod tests {
 
     #[test]
     fn every_case_is_what_its_name_says() {
-        let model = Model::from_mjcf(HUMANOID).unwrap();
+        let model = physics_bridge::Model::from_mjcf(HUMANOID).unwrap();
+        let model = Model::new(&model, Engine::Mujoco).unwrap();
         for (name, change) in CASES {
             let other = changed(&model, change).unwrap();
+            let (other, model) = (other.described(), model.described());
             let mass = (other.mass_kg() / model.mass_kg()) as f32;
             let expected = match name {
                 "mass_x0.8" => (0.8, 4),

@@ -2,7 +2,8 @@
 
 use std::collections::BTreeMap;
 
-use physics_bridge::{ModelError, Terrain};
+use physics::ModelError;
+use physics_bridge::Terrain;
 
 use super::roam::{FallReport, roam};
 use crate::Rig;

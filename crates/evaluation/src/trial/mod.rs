@@ -11,7 +11,8 @@ mod statistics;
 use std::sync::Arc;
 
 use glam::Vec2;
-use physics_bridge::{CONTROL_HZ, Character, Model, WALKING_START_MPS};
+use physics::{Character, Model, PhysicsCharacter};
+use policy_core::contract::{CONTROL_HZ, WALKING_START_MPS};
 use policy_core::{
     Bindings, CharacterPack, CharacterState, Command, CommandMapper, Controller, ControllerConfig,
     GamepadState, Heading, JointTargets, SkillId,

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use physics_bridge::{Model, Snapshot};
+use physics::{Model, PhysicsCharacter, Snapshot};
 use policy_core::{CharacterPack, Controller, ControllerConfig};
 use random::Rng;
 

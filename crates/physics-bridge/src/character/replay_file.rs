@@ -7,6 +7,7 @@ use std::path::Path;
 use std::sync::Arc;
 
 use mujoco_rs::wrappers::mj_data::MjtState;
+use policy_core::contract::Settings;
 use policy_core::format::{RolesEntry, SkeletonEntry};
 use policy_core::training::{Roles, SkeletonBody, SkeletonJoint};
 use policy_core::{BodyId, Skeleton};
@@ -16,7 +17,6 @@ use super::push::Pushes;
 use super::{Character, Snapshot};
 use crate::description::file::{self, quoted};
 use crate::description::model::{Model, STATE, Source};
-use crate::description::settings::Settings;
 use crate::description::terrain::Terrain;
 
 pub use self::error::ReplayFileError;

@@ -5,6 +5,7 @@
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
+use policy_core::contract::PhysicsCharacter;
 use policy_core::{
     Arithmetic, BatchScratch, Blend, BlendMode, CharacterPack, Command, Controller, evaluate_batch_into,
 };
@@ -43,7 +44,7 @@ pub(super) struct Batch {
     time: Duration,
 }
 
-impl Crowd {
+impl<P: PhysicsCharacter + Send> Crowd<P> {
     /// Runs one control tick of every character with its controller and command, as
     /// [`Character::control_tick`](crate::Character::control_tick). Returns how many diverged.
     ///
@@ -114,16 +115,16 @@ impl Crowd {
 }
 
 /// Some of the characters, with what holds their controllers.
-struct Part<'a, C> {
+struct Part<'a, P: PhysicsCharacter, C> {
     /// Index of the first.
     first: usize,
     dt_secs: f32,
     shared: &'a Shared,
-    members: &'a mut [Member],
+    members: &'a mut [Member<P>],
     owners: &'a mut [C],
 }
 
-impl<C: Send> Part<'_, C> {
+impl<P: PhysicsCharacter + Send, C: Send> Part<'_, P, C> {
     /// Steps every character with its controller's targets. Returns how many diverged.
     fn step<F>(self, steering: &F) -> usize
     where
@@ -152,11 +153,12 @@ impl Batch {
     }
 
     /// Senses every character of a part and makes its joint targets.
-    fn control<C, F>(&mut self, part: &mut Part<'_, C>, steering: &F)
+    fn control<P, C, F>(&mut self, part: &mut Part<'_, P, C>, steering: &F)
     where
+        P: PhysicsCharacter,
         F: Fn(usize, &mut C) -> (&mut Controller, Command),
     {
-        part.members.iter_mut().for_each(|member| member.character.sense());
+        part.members.iter_mut().for_each(|member| member.sense());
         let start = Instant::now();
         self.prepare(part, steering);
         self.evaluate(part, steering);
@@ -164,8 +166,9 @@ impl Batch {
     }
 
     /// Prepares every controller and collects those that the batch evaluates. The others complete their tick.
-    fn prepare<C, F>(&mut self, part: &mut Part<'_, C>, steering: &F)
+    fn prepare<P, C, F>(&mut self, part: &mut Part<'_, P, C>, steering: &F)
     where
+        P: PhysicsCharacter,
         F: Fn(usize, &mut C) -> (&mut Controller, Command),
     {
         self.members.clear();
@@ -178,7 +181,7 @@ impl Batch {
                 && Arc::ptr_eq(controller.pack(), &part.shared.pack)
                 && config.arithmetic == part.shared.arithmetic
                 && config.blend_mode != BlendMode::Actions;
-            let state = member.character.sensed();
+            let state = &member.sensed;
             if !fits {
                 controller.tick(state, &command, part.dt_secs);
             } else if controller.prepare(state, &command, part.dt_secs) {
@@ -190,8 +193,9 @@ impl Batch {
     }
 
     /// Evaluates the batch and makes joint targets of it.
-    fn evaluate<C, F>(&mut self, part: &mut Part<'_, C>, steering: &F)
+    fn evaluate<P, C, F>(&mut self, part: &mut Part<'_, P, C>, steering: &F)
     where
+        P: PhysicsCharacter,
         F: Fn(usize, &mut C) -> (&mut Controller, Command),
     {
         if self.members.is_empty() {

@@ -1,7 +1,7 @@
 //! How high the ground is, as the compiled model has it: what is walked on, not what was asked for.
 
-use glam::Vec3;
 use mujoco_rs::wrappers::mj_model::{MjModel, MjtGeomBase, MjtObjBase};
+use policy_core::contract::HeightField;
 
 use super::mjcf::{FLOOR, HEIGHT_FIELD};
 use super::model_error::ModelError;
@@ -11,76 +11,6 @@ use super::model_error::ModelError;
 pub(crate) struct Ground {
     plane_height: f32,
     pub field: Option<HeightField>,
-}
-
-/// A rectangular grid of heights about the origin, each cell two triangles that share the edge from its
-/// lowest row and column to its highest.
-#[derive(Clone, Debug, PartialEq)]
-pub struct HeightField {
-    rows: usize,
-    columns: usize,
-    half_extent: [f32; 2],
-    heights: Box<[f32]>,
-}
-
-impl HeightField {
-    /// Points along y.
-    #[must_use]
-    pub fn rows(&self) -> usize {
-        self.rows
-    }
-
-    /// Points along x.
-    #[must_use]
-    pub fn columns(&self) -> usize {
-        self.columns
-    }
-
-    /// Heights row by row, metres, world space; x grows along a row, y from row to row.
-    #[must_use]
-    pub fn heights(&self) -> &[f32] {
-        &self.heights
-    }
-
-    /// A point of the grid, world space.
-    ///
-    /// # Panics
-    /// When there is no such row or column.
-    #[must_use]
-    pub fn point(&self, row: usize, column: usize) -> Vec3 {
-        let along = |i: usize, n: usize, half: f32| half * (2.0 * i as f32 / (n - 1) as f32 - 1.0);
-        Vec3::new(
-            along(column, self.columns, self.half_extent[0]),
-            along(row, self.rows, self.half_extent[1]),
-            self.heights[row * self.columns + column],
-        )
-    }
-
-    /// Height at a point, `None` outside the field.
-    fn height_at(&self, x: f32, y: f32) -> Option<f32> {
-        let [half_x, half_y] = self.half_extent;
-        if !(x.abs() <= half_x && y.abs() <= half_y) {
-            return None;
-        }
-        let (column, u) = cell((x + half_x) / (2.0 * half_x), self.columns);
-        let (row, v) = cell((y + half_y) / (2.0 * half_y), self.rows);
-        let at = |row: usize, column: usize| self.heights[row * self.columns + column];
-        let (here, across) = (at(row, column), at(row + 1, column + 1));
-        Some(if u >= v {
-            let beside = at(row, column + 1);
-            here + u * (beside - here) + v * (across - beside)
-        } else {
-            let above = at(row + 1, column);
-            here + v * (above - here) + u * (across - above)
-        })
-    }
-}
-
-/// Which of `points - 1` cells a fraction of the side falls into, and how far.
-fn cell(fraction: f32, points: usize) -> (usize, f32) {
-    let place = fraction * (points - 1) as f32;
-    let index = (place as usize).min(points - 2);
-    (index, place - index as f32)
 }
 
 impl Ground {
@@ -114,12 +44,9 @@ fn height_field(model: &MjModel, geom: usize) -> HeightField {
     let first = model.hfield_adr()[field] as usize;
     let base = model.geom_pos()[geom][2];
     let heights = &model.hfield_data()[first..first + rows * columns];
-    HeightField {
-        rows,
-        columns,
-        half_extent: [half_x as f32, half_y as f32],
-        heights: heights.iter().map(|&h| (base + f64::from(h) * scale) as f32).collect(),
-    }
+    let heights: Vec<f32> = heights.iter().map(|&h| (base + f64::from(h) * scale) as f32).collect();
+    HeightField::from_heights([rows, columns], [half_x as f32, half_y as f32], heights)
+        .expect("MuJoCo has compiled the field, and this crate made it")
 }
 
 #[cfg(test)]

@@ -6,12 +6,11 @@ use std::sync::Arc;
 
 use mujoco_rs::wrappers::mj_data::{MjData, MjtState};
 use mujoco_rs::wrappers::mj_model::MjModel;
-use policy_core::contract::Pose;
+use policy_core::contract::{HeightField, Pose, Settings};
 use policy_core::{ActuationContract, Skeleton};
 
-use super::ground::{Ground, HeightField};
+use super::ground::Ground;
 use super::layout::Layout;
-use super::settings::Settings;
 use super::shape::Shape;
 use super::terrain::Terrain;
 

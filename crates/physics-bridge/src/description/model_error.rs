@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use policy_core::contract::PoseError;
+use policy_core::contract::{PoseError, SettingError};
 use policy_core::training::SkeletonError;
 
 use super::file::quoted;
@@ -174,15 +174,6 @@ pub enum ModelError {
         found: f32,
     },
     /// A number of [`Settings`](crate::Settings) is out of its range.
-    #[error("expected the setting {field} between {least} and {most}, found {found}")]
-    Setting {
-        /// Field of the settings.
-        field: &'static str,
-        /// Least.
-        least: f32,
-        /// Most.
-        most: f32,
-        /// Given.
-        found: f32,
-    },
+    #[error(transparent)]
+    Setting(#[from] SettingError),
 }

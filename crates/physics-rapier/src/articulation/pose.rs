@@ -1,8 +1,9 @@
 //! A character's pose in MuJoCo's terms: set, read, stood on the ground.
 
-use policy_core::Heading;
 use policy_core::contract::{Pose, PoseError, ROOT_QPOS, ROOT_QVEL};
+use policy_core::{BodyId, Heading};
 use rapier3d::dynamics::{JointAxis, MultibodyJointSet, RigidBodySet};
+use rapier3d::geometry::ColliderSet;
 use rapier3d::math::{Pose as RapierPose, Rotation, Vector};
 
 use super::{Articulation, Removed, Sets};
@@ -120,17 +121,28 @@ impl Articulation {
         Ok(())
     }
 
-    /// Height of the lowest point of the colliders' boxes, metres.
+    /// Height of the lowest point of the character, metres.
     fn lowest_point(&self, world: &Sets<'_>) -> f32 {
-        let bodies = self.bodies.iter().filter_map(|&body| world.bodies.get(body));
-        let boxes = bodies.flat_map(|body| {
-            let colliders = body.colliders().iter().filter_map(|&collider| world.colliders.get(collider));
-            colliders.map(|collider| {
-                let within = collider.position_wrt_parent().copied().unwrap_or_default();
-                collider.shape().compute_aabb(&(*body.position() * within)).mins.z
-            })
+        let of = |body| self.lowest_point_of(world.bodies, world.colliders, BodyId::new(body));
+        (0..self.bodies.len()).map(of).fold(f32::INFINITY, f32::min)
+    }
+
+    /// Height of the lowest point of the boxes around a body's colliders, metres; infinite without one.
+    pub(crate) fn lowest_point_of(
+        &self,
+        bodies: &RigidBodySet,
+        colliders: &ColliderSet,
+        body: BodyId,
+    ) -> f32 {
+        let Some(body) = self.bodies.get(body.index()).and_then(|&body| bodies.get(body)) else {
+            return f32::INFINITY;
+        };
+        let own = body.colliders().iter().filter_map(|&collider| colliders.get(collider));
+        let lowest = own.map(|collider| {
+            let within = collider.position_wrt_parent().copied().unwrap_or_default();
+            collider.shape().compute_aabb(&(*body.position() * within)).mins.z
         });
-        boxes.fold(f32::INFINITY, f32::min)
+        lowest.fold(f32::INFINITY, f32::min)
     }
 }
 

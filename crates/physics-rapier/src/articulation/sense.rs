@@ -5,7 +5,6 @@ use rapier3d::dynamics::{Multibody, MultibodyJointSet, RigidBodySet};
 use rapier3d::math::Vector;
 
 use super::{Articulation, Removed};
-use crate::convert::{quat, vec3, vector};
 
 impl Articulation {
     /// Writes what a policy senses: motion of the body frames in world axes, and joint velocities. `ground_height` is
@@ -36,7 +35,7 @@ impl Articulation {
                 Some(parent) => {
                     let parent = out.bodies[parent.index()];
                     let [mut place, mut linear, mut angular] =
-                        [parent.position, parent.linear_velocity, parent.angular_velocity].map(vector);
+                        [parent.position, parent.linear_velocity, parent.angular_velocity];
                     for &hinge in &self.chains[index] {
                         let hinge = &self.hinges[hinge];
                         let child = self.links[hinge.child];
@@ -49,10 +48,10 @@ impl Articulation {
                     let own = body.position();
                     linear += angular.cross(own.translation - place);
                     BodyState {
-                        position: vec3(own.translation),
-                        rotation: quat(own.rotation),
-                        linear_velocity: vec3(linear),
-                        angular_velocity: vec3(angular),
+                        position: own.translation,
+                        rotation: own.rotation,
+                        linear_velocity: linear,
+                        angular_velocity: angular,
                     }
                 }
             };
@@ -71,10 +70,10 @@ impl Articulation {
         let angular = Vector::new(velocity[3], velocity[4], velocity[5]);
         let linear = Vector::new(velocity[0], velocity[1], velocity[2]) - angular.cross(offset);
         BodyState {
-            position: vec3(pose.translation - offset),
-            rotation: quat(pose.rotation),
-            linear_velocity: vec3(linear),
-            angular_velocity: vec3(angular),
+            position: pose.translation - offset,
+            rotation: pose.rotation,
+            linear_velocity: linear,
+            angular_velocity: angular,
         }
     }
 }

@@ -2,15 +2,15 @@
 //!
 //! Both become forces. Rapier loses an impulse on a link of a multibody.
 
-use policy_core::contract::{PushError, check_impulse, check_push};
+use policy_core::contract::{MAX_PUSHED_MPS, PushError, check_impulse, check_push};
 use policy_core::glam::Vec3;
-use policy_core::{BodyId, Skeleton};
-use rapier3d::dynamics::{RigidBodyHandle, RigidBodySet};
+use policy_core::{BodyId, BodyState, CharacterState, Skeleton};
+use rapier3d::dynamics::{RigidBody, RigidBodyHandle, RigidBodySet};
 
 use super::Character;
-use crate::convert::vector;
 
 /// The pushes under way, one entry for each body. World axes, at the centre of mass of each body.
+#[derive(Clone)]
 pub(super) struct Pushes {
     /// Newtons.
     forces: Vec<Vec3>,
@@ -43,24 +43,45 @@ impl Pushes {
             || self.impulses.get(index).is_some_and(|&impulse| impulse != Vec3::ZERO)
     }
 
-    /// Adds the forces of the physics step that comes next.
-    pub(super) fn apply(&mut self, bodies: &mut RigidBodySet, handles: &[RigidBodyHandle], dt_secs: f32) {
+    /// True while a force has to be added.
+    pub(super) fn are_under_way(&self) -> bool {
+        self.steps_left.iter().any(|&left| left > 0) || self.impulses.iter().any(|&i| i != Vec3::ZERO)
+    }
+
+    /// Adds the forces of the physics step that comes next, but for bodies that outrun theirs. `state` is that of now.
+    pub(super) fn apply(
+        &mut self,
+        bodies: &mut RigidBodySet,
+        handles: &[RigidBodyHandle],
+        state: &CharacterState,
+        dt_secs: f32,
+    ) {
         for (index, &handle) in handles.iter().enumerate() {
             let mut force = std::mem::take(&mut self.impulses[index]) / dt_secs;
             if self.steps_left[index] > 0 {
                 self.steps_left[index] -= 1;
                 force += self.forces[index];
             }
-            if force != Vec3::ZERO {
-                bodies[handle].add_force(vector(force), true);
+            if force != Vec3::ZERO && !outruns(&bodies[handle], &state.bodies[index], force) {
+                bodies[handle].add_force(force, true);
             }
         }
     }
 }
 
+/// True when the centre of mass of a body moves along `force` faster than a push can drive it.
+fn outruns(body: &RigidBody, state: &BodyState, force: Vec3) -> bool {
+    let centre = *body.position() * body.mass_properties().local_mprops.local_com;
+    let velocity = state.linear_velocity + state.angular_velocity.cross(centre - state.position);
+    velocity.dot(force) > MAX_PUSHED_MPS * force.length()
+}
+
 impl Character {
     /// Pushes `body` at its centre of mass with `force` newtons, world axes, for `secs` from now, rounded to whole
     /// physics steps. Replaces the push that still acts on the body. Posing the character ends it.
+    ///
+    /// While the body already moves along the force at [`MAX_PUSHED_MPS`], the force is zero, so pushes that are repeated
+    /// do not add up without bound.
     ///
     /// # Errors
     /// When there is no such body, a number is not finite, the force is over 1 MN, or the duration negative or over
@@ -73,7 +94,8 @@ impl Character {
     }
 
     /// Hits `body` at its centre of mass with `impulse` newton seconds, world axes, during the next physics step.
-    /// Several impulses before it add up.
+    /// Several impulses before it add up. An impulse on a body that already moves along it at [`MAX_PUSHED_MPS`] has no
+    /// effect.
     ///
     /// # Errors
     /// When there is no such body, or the impulse is not finite or over 1 MN s.

@@ -10,6 +10,7 @@ use clap::Args;
 use clips::ClipFolder;
 use evaluation::{Effort, PlayerReport, Progress, Section, clip_states, evaluate, plots, table};
 use files::write_atomically;
+use physics::Engine;
 use physics_bridge::Model;
 use policy_core::{CharacterPack, CharacterState, ControllerConfig, Steering, TurnAssist};
 use trainer::recipe::Recipe;
@@ -23,7 +24,7 @@ pub(crate) struct Arguments {
     #[arg(required_unless_present = "from")]
     pack: Option<PathBuf>,
     /// Print and draw what an earlier run has written to this file, and measure nothing.
-    #[arg(long, conflicts_with_all = ["pack", "json", "quick", "only"])]
+    #[arg(long, conflicts_with_all = ["pack", "json", "quick", "only", "physics", "characters"])]
     from: Option<PathBuf>,
     /// File to write the measures to.
     #[arg(long)]
@@ -37,6 +38,12 @@ pub(crate) struct Arguments {
     /// Measure these sections alone, separated by commas.
     #[arg(long, value_delimiter = ',', value_parser = section)]
     only: Vec<Section>,
+    /// Measure in this engine: mujoco or rapier.
+    #[arg(long, default_value = "mujoco", value_parser = engine)]
+    physics: Engine,
+    /// So many characters in every measure, in place of the numbers that figures are published from.
+    #[arg(long, value_parser = clap::value_parser!(u16).range(1..=10_000))]
+    characters: Option<u16>,
     /// Leave turning to the policies: the player's controller does not slow down to turn.
     #[arg(long)]
     no_turn_assist: bool,
@@ -60,6 +67,12 @@ fn section(name: &str) -> Result<Section, String> {
     Section::from_name(name).ok_or_else(|| format!("expected one of {}", names()))
 }
 
+/// The engine of a name.
+fn engine(name: &str) -> Result<Engine, String> {
+    let names = || Engine::ALL.map(Engine::name).join(" or ");
+    Engine::from_name(name).ok_or_else(|| format!("expected {}", names()))
+}
+
 /// Measures.
 pub(crate) fn run(
     model: &Model,
@@ -75,6 +88,7 @@ pub(crate) fn run(
     let path = arguments.pack.as_ref().context("expected a pack")?;
     let pack = super::load::pack(path)?;
     let effort = if arguments.quick { Effort::QUICK } else { Effort::FULL };
+    let effort = arguments.characters.map_or(effort, |count| effort.with_characters(count.into()));
     let sections: &[Section] = if arguments.only.is_empty() { &Section::ALL } else { &arguments.only };
     let states = match clips {
         Some(clips) => states_of_clips(model, recipes, clips, &pack)?,
@@ -85,7 +99,8 @@ pub(crate) fn run(
     let steering = (!arguments.no_steering).then(Steering::default);
     let config = ControllerConfig { steering, turn_assist, handover_secs, ..ControllerConfig::default() };
     let progress = Progress::bar();
-    let evaluation = evaluate(model, &Arc::new(pack), config, (&effort, sections), &states, &progress)?;
+    let model = physics::Model::new(model, arguments.physics)?;
+    let evaluation = evaluate(&model, &Arc::new(pack), config, (&effort, sections), &states, &progress)?;
     progress.finish();
     show(&evaluation.player, arguments.plots.as_deref())?;
     let text = serde_json::to_string_pretty(&evaluation)?;

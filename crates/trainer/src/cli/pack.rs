@@ -8,6 +8,7 @@ use anyhow::{Context, Result, ensure};
 use clap::Args;
 use evaluation::{measure_get_up, measure_skill};
 use files::{read_bounded, write_atomically};
+use physics::Engine;
 use physics_bridge::Model;
 use policy_core::{CharacterPack, SkillId};
 use trainer::checkpoint::CheckpointError;
@@ -115,6 +116,7 @@ pub(crate) fn run(
 
 /// Prints how the skills of a pack end.
 fn report_skills(model: &Model, pack: &Arc<CharacterPack>, which: &str, tries: usize) -> Result<()> {
+    let model = &physics::Model::new(model, Engine::Mujoco)?;
     for (index, skill) in pack.skills().iter().enumerate().filter(|_| tries > 0) {
         let id = SkillId::new(index);
         let report = match pack.recovery() == Some(id) {

@@ -8,6 +8,7 @@ use anyhow::{Context, Result};
 use clap::Args;
 use evaluation::maps::Maps;
 use files::write_atomically;
+use physics::Engine;
 use physics_bridge::Model;
 
 use super::output::say;
@@ -30,7 +31,8 @@ pub(crate) fn run(model: &Model, arguments: &Arguments) -> Result<()> {
     let path = &arguments.pack;
     let pack = Arc::new(super::load::pack(path)?);
     std::fs::create_dir_all(&arguments.out)?;
-    let maps = Maps::of(model, &pack, arguments.secs)
+    let model = physics::Model::new(model, Engine::Mujoco)?;
+    let maps = Maps::of(&model, &pack, arguments.secs)
         .with_context(|| format!("{}: expected a path, found none", path.display()))?;
     for (name, map) in [("states", &maps.states), ("parameters", &maps.parameters)] {
         write_atomically(&arguments.out.join(format!("{name}.csv")), map.csv().as_bytes())?;

@@ -10,7 +10,7 @@ use evaluation::strip::{Row, draw};
 use evaluation::trial::TICK_SECS;
 use evaluation::{STANCE_METRES, clip_states, pose_error, watch, watch_layers, watch_skill};
 use files::write_atomically;
-use physics_bridge::Model;
+use physics::{Engine, Model};
 use policy_core::{CharacterPack, CharacterState, NodeId, SkillId};
 use trainer::recipe::Recipe;
 
@@ -33,14 +33,20 @@ pub(crate) struct Arguments {
 }
 
 /// Draws.
-pub(crate) fn run(model: &Model, recipes: &Path, clips: &ClipFolder, a: &Arguments) -> Result<()> {
+pub(crate) fn run(
+    described: &physics_bridge::Model,
+    recipes: &Path,
+    clips: &ClipFolder,
+    a: &Arguments,
+) -> Result<()> {
+    let model = &Model::new(described, Engine::Mujoco)?;
     let pack = Arc::new(super::load::pack(&a.pack)?);
     std::fs::create_dir_all(&a.out).with_context(|| format!("cannot make {}", a.out.display()))?;
     let span = a.figures.max(1) * a.stride.max(1);
     for (index, node) in pack.graph().nodes().iter().enumerate().filter(|(_, n)| n.speed_mps.is_some()) {
         let recipe = Recipe::load(&recipes.join(format!("{}.toml", node.name)))?;
         let name = &recipe.clips[0].name;
-        let clip = clip_states(model, &clips.load(name)?)?;
+        let clip = clip_states(described, &clips.load(name)?)?;
         let motion = watch(model, &pack, NodeId::new(index));
         if motion.len() < span {
             say(format_args!("{}: falls before it can be drawn", node.name))?;
@@ -78,7 +84,7 @@ fn episodic_skills(
         let raises = pack.recovery() == Some(SkillId::new(index));
         // One that raises the character has a clip for each side it may lie on.
         for (which, clip) in recipe.clips.iter().take(if raises { 2 } else { 1 }).enumerate() {
-            let states = clip_states(model, &clips.load(&clip.name)?)?;
+            let states = clip_states(model.described(), &clips.load(&clip.name)?)?;
             let states = if raises { &states[..] } else { &states[..states.len() / 2] };
             let motion = watch_skill(model, pack, SkillId::new(index), which == 0);
             let name = if raises { clip.name.clone() } else { skill.name.clone() };

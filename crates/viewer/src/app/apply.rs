@@ -27,6 +27,7 @@ fn needs_a_simulation(command: &ViewerCommand) -> bool {
             | C::Scrub(_)
             | C::StepBack
             | C::Settings(_)
+            | C::Engine(_)
             | C::Ground(_)
             | C::Characters(_)
     )
@@ -54,7 +55,11 @@ impl App {
             }
             ViewerCommand::DeletePreset(_) => {}
             ViewerCommand::Mode(mode) => self.sim.set_blend_mode(mode),
-            ViewerCommand::Ghost(Some(mode)) => self.sim.start_ghost(mode),
+            ViewerCommand::Ghost(Some(kind)) => {
+                if let Err(error) = self.sim.start_ghost(kind) {
+                    self.notice = Some(error.to_string());
+                }
+            }
             ViewerCommand::Ghost(None) => self.sim.stop_ghost(),
             ViewerCommand::Skill(skill) => self.sim.overrides.skill = Some(skill),
             ViewerCommand::Camera(mode) => (self.camera.mode, self.layout.camera) = (mode, mode),
@@ -93,6 +98,7 @@ impl App {
                     self.notice = Some(error.to_string());
                 }
             }
+            ViewerCommand::Engine(engine) => self.rebuild(SimConfig { engine, ..*self.sim.config() }),
             ViewerCommand::Ground(ground) => self.rebuild(SimConfig { ground, ..*self.sim.config() }),
             ViewerCommand::Characters(characters) => {
                 self.rebuild(SimConfig { characters, ..*self.sim.config() });
@@ -116,6 +122,11 @@ impl App {
     }
 
     fn scrub(&mut self, age: usize) {
+        let engine = self.sim.engine();
+        if !engine.keeps_history() {
+            self.notice = Some(format!("{} keeps no history to go back to.", engine.title()));
+            return;
+        }
         self.clock.paused = true;
         self.sim.rewind_to(age);
     }

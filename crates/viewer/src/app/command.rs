@@ -1,13 +1,13 @@
 //! Everything a panel, key or mouse can ask for.
 
 use glam::Vec2;
-use physics_bridge::Settings;
+use policy_core::contract::Settings;
 use policy_core::{BlendMode, Goal, SkillId};
 
 use super::{Grab, Layers, PanelKind, Preset};
 use crate::camera::CameraMode;
 use crate::scene_setup::Shown;
-use crate::sim::GroundKind;
+use crate::sim::{Engine, GhostKind, GroundKind};
 
 /// What to record.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -36,8 +36,8 @@ pub enum ViewerCommand {
     DeletePreset(usize),
     /// How blends become actions.
     Mode(BlendMode),
-    /// A second character under another mode; `None` ends it.
-    Ghost(Option<BlendMode>),
+    /// A second character under another mode or in another engine; `None` ends it.
+    Ghost(Option<GhostKind>),
     /// Start a skill.
     Skill(SkillId),
     /// Pause or continue.
@@ -54,6 +54,8 @@ pub enum ViewerCommand {
     Reset,
     /// Gravity, friction, strength.
     Settings(Settings),
+    /// Another engine.
+    Engine(Engine),
     /// Another ground.
     Ground(GroundKind),
     /// So many characters.

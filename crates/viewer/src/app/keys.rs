@@ -5,7 +5,7 @@ use policy_core::{BlendMode, Button, Buttons, GamepadState};
 
 use super::{App, Record, ViewerCommand};
 use crate::camera::CameraMode;
-use crate::sim::SHOVE_BUTTON;
+use crate::sim::{GhostKind, SHOVE_BUTTON};
 
 /// Seconds in which a held key runs a trigger from 0 to 1, and back when it is released.
 const RAMP_SECS: f32 = 1.2;
@@ -150,7 +150,7 @@ fn shortcuts(app: &App) -> Vec<(Key, ViewerCommand)> {
     let next_mode = next(&BlendMode::ALL, app.sim.blend_mode());
     let ghost = match app.sim.ghost() {
         Some(_) => None,
-        None => Some(next_mode),
+        None => Some(GhostKind::Mode(next_mode)),
     };
     let film = if app.recording.is_some() { Record::Stop } else { Record::Video };
     vec![

@@ -18,6 +18,7 @@ mod requests;
 use std::sync::mpsc::Receiver;
 
 use egui::Ui;
+use physics::PhysicsCharacter;
 use policy_core::GamepadState;
 
 use crate::analysis::Analysis;
@@ -246,7 +247,8 @@ impl App {
     /// Tells of all divergences of a tick at once, in the words of the first.
     fn fail(&mut self, first: &Divergence, all: &[Divergence]) {
         let path = std::env::temp_dir().join("policy-space-diverged.json");
-        let replay = first.replay.save(&path).is_ok().then(|| path.display().to_string());
+        let saved = first.replay.as_ref().is_some_and(|replay| replay.save(&path).is_ok());
+        let replay = saved.then(|| path.display().to_string());
         let mut what = format!("character {}: {}", first.character, first.what);
         if all.len() > 1 {
             what += &format!(" (and {} more characters)", all.len() - 1);

@@ -154,10 +154,10 @@ impl<'a> Headless<'a> {
         self.divergences += 1;
         // Ten tell the story; a run that diverges every tick must not fill the disk.
         if self.replays.len() < 10
-            && let Some(report) = &self.demo.report
+            && let (Some(report), Some(replay)) = (&self.demo.report, &divergence.replay)
         {
             let path = report.with_extension(format!("diverged{}.json", self.replays.len()));
-            divergence.replay.save(&path).with_context(|| format!("replay file of {}", divergence.what))?;
+            replay.save(&path).with_context(|| format!("replay file of {}", divergence.what))?;
             self.replays.push(path.display().to_string());
         }
         Ok(())
@@ -179,6 +179,7 @@ impl<'a> Headless<'a> {
             seconds: self.seconds,
             ended_by: self.ended_by.map(|signal| signal.name),
             characters,
+            physics: self.demo.physics.name(),
             mode: self.demo.mode.name(),
             terrain: self.demo.terrain.name(),
             seed: self.demo.seed,

@@ -15,9 +15,9 @@ use clap::{Args, Parser, Subcommand};
 use policy_core::BlendMode;
 
 use crate::app::App;
-use crate::sim::GroundKind;
+use crate::sim::{Engine, GroundKind};
 use crate::text;
-pub use values::PanelList;
+pub use values::{GhostChoice, PanelList};
 
 /// Steer a physics-based character by blending the parameters of tiny policies.
 #[derive(Debug, Parser)]
@@ -86,7 +86,8 @@ pub struct Demo {
         long,
         value_name = "FILE",
         conflicts_with_all = [
-            "script", "recording", "report", "character", "mode", "ghost", "terrain", "characters", "seed",
+            "script", "recording", "report", "character", "mode", "ghost", "physics", "terrain", "characters",
+            "seed",
         ]
     )]
     pub poses: Option<PathBuf>,
@@ -134,9 +135,12 @@ pub struct Demo {
     /// How blends become actions: parameters, actions or switch.
     #[arg(long, default_value = "parameters", value_parser = values::mode)]
     pub mode: BlendMode,
-    /// Walk beside a second character under another blend mode.
-    #[arg(long, value_name = "MODE", value_parser = values::mode)]
-    pub ghost: Option<BlendMode>,
+    /// The physics engine: mujoco or rapier.
+    #[arg(long, default_value = "mujoco", value_name = "ENGINE", value_parser = values::engine)]
+    pub physics: Engine,
+    /// Walk beside a second character in the other engine, or under the blend mode or in the engine that is named.
+    #[arg(long, value_name = "WHAT", num_args = 0..=1, default_missing_value = values::OTHER, value_parser = values::ghost)]
+    pub ghost: Option<GhostChoice>,
     /// The ground: flat, wavy or steps.
     #[arg(long, default_value = "flat", value_parser = values::ground)]
     pub terrain: GroundKind,
@@ -202,6 +206,8 @@ mod tests {
     fn wrong_values_are_refused_and_say_what_is_expected() {
         assert!(error(&["--terrain", "lava"]).contains("flat, wavy, steps"));
         assert!(error(&["--mode", "add"]).contains("parameters, actions, switch"));
+        assert!(error(&["--physics", "bullet"]).contains("mujoco, rapier"));
+        assert!(error(&["--ghost", "bullet"]).contains("other"));
         assert!(error(&["--size", "12x"]).contains("1280x720"));
         assert!(error(&["--size", "8192x8192"]).contains("at most 8294400 pixels"));
         assert!(error(&["--characters", "0"]).contains("1 to 200"));

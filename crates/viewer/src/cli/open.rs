@@ -2,11 +2,11 @@
 
 use std::path::PathBuf;
 
-use super::{Demo, load};
+use super::{Demo, GhostChoice, load};
 use crate::app::{App, PanelKind, PanelLayout, Side};
 use crate::dropped::word_about;
 use crate::render::Appearance;
-use crate::sim::{Playback, SimConfig, Simulation};
+use crate::sim::{GhostKind, Playback, SimConfig, Simulation};
 
 /// What a window needs.
 #[derive(Debug)]
@@ -54,6 +54,7 @@ pub fn open(demo: &Demo) -> anyhow::Result<Opened> {
         notices.extend(word.map(str::to_owned));
     }
     let config = SimConfig {
+        engine: demo.physics,
         ground: demo.terrain,
         characters: demo.characters,
         seed: demo.seed,
@@ -68,8 +69,11 @@ pub fn open(demo: &Demo) -> anyhow::Result<Opened> {
         let playback = Playback::load(path, sim.model())?;
         sim.play(playback);
     }
-    if let Some(mode) = demo.ghost {
-        sim.start_ghost(mode);
+    if let Some(choice) = demo.ghost {
+        sim.start_ghost(match choice {
+            GhostChoice::OtherEngine => GhostKind::Engine(demo.physics.other()),
+            GhostChoice::Kind(kind) => kind,
+        })?;
     }
     let mut app = App::new(sim, layout);
     app.has_mesh = appearance.mesh().is_some();

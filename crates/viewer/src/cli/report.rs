@@ -13,6 +13,8 @@ pub struct Report {
     pub ended_by: Option<&'static str>,
     /// Number of characters.
     pub characters: usize,
+    /// Physics engine.
+    pub physics: &'static str,
     /// Blend mode.
     pub mode: &'static str,
     /// Ground.

@@ -4,7 +4,7 @@ use policy_core::BlendMode;
 
 use super::MOST_SECS;
 use crate::app::PanelKind;
-use crate::sim::{GroundKind, MAX_CHARACTERS};
+use crate::sim::{Engine, GhostKind, GroundKind, MAX_CHARACTERS};
 
 /// Most pixels of a picture: one takes about 45 bytes of memory.
 const MOST_PIXELS: u32 = 3840 * 2160;
@@ -67,3 +67,29 @@ pub(super) fn ground(text: &str) -> Result<GroundKind, String> {
     let names = GroundKind::ALL.map(GroundKind::name).join(", ");
     GroundKind::from_name(text).ok_or_else(|| format!("expected one of {names}"))
 }
+
+pub(super) fn engine(text: &str) -> Result<Engine, String> {
+    let names = Engine::ALL.map(Engine::name).join(", ");
+    Engine::from_name(text).ok_or_else(|| format!("expected one of {names}"))
+}
+
+/// What a ghost differs in.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum GhostChoice {
+    /// The engine that the player is not in.
+    OtherEngine,
+    /// As named.
+    Kind(GhostKind),
+}
+
+pub(super) fn ghost(text: &str) -> Result<GhostChoice, String> {
+    let mode = || BlendMode::from_name(text).map(GhostKind::Mode);
+    let kind = Engine::from_name(text).map(GhostKind::Engine).or_else(mode).map(GhostChoice::Kind);
+    kind.or((text == OTHER).then_some(GhostChoice::OtherEngine)).ok_or_else(|| {
+        let names = BlendMode::ALL.map(BlendMode::name).into_iter().chain(Engine::ALL.map(Engine::name));
+        format!("expected {OTHER} or one of {}", names.collect::<Vec<_>>().join(", "))
+    })
+}
+
+/// Name of the engine that the player is not in.
+pub(super) const OTHER: &str = "other";

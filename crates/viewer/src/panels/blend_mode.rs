@@ -6,6 +6,7 @@ use policy_core::training::Evaluation;
 
 use super::WRONG;
 use crate::app::{App, ViewerCommand};
+use crate::sim::GhostKind;
 
 const TEXTS: [&str; 3] = [
     "the parameters are interpolated: one network in between",
@@ -30,14 +31,15 @@ pub(super) fn show(ui: &mut Ui, app: &App, commands: &mut Vec<ViewerCommand>) {
     ui.separator();
     ui.label("A ghost from the same state, under another mode:");
     ui.horizontal_wrapped(|ui| {
-        let ghost = app.sim.ghost().map(|g| g.mode());
+        let ghost = app.sim.ghost().map(|g| g.kind());
         if ui.selectable_label(ghost.is_none(), "no ghost").clicked() {
             commands.push(ViewerCommand::Ghost(None));
         }
         for mode in BlendMode::ALL {
-            let label = ui.selectable_label(ghost == Some(mode), format!("ghost: {}", mode.name()));
+            let label =
+                ui.selectable_label(ghost == Some(GhostKind::Mode(mode)), format!("ghost: {}", mode.name()));
             if label.clicked() {
-                commands.push(ViewerCommand::Ghost(Some(mode)));
+                commands.push(ViewerCommand::Ghost(Some(GhostKind::Mode(mode))));
             }
         }
     });

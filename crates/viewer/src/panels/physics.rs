@@ -3,12 +3,13 @@
 use egui::{Slider, Ui};
 
 use crate::app::{App, Clock, ViewerCommand};
-use crate::sim::{GroundKind, LEAST_FRICTION, MAX_CHARACTERS};
+use crate::sim::{Engine, GhostKind, GroundKind, LEAST_FRICTION, MAX_CHARACTERS};
 use crate::text::noun;
 
 pub(super) fn show(ui: &mut Ui, app: &App, commands: &mut Vec<ViewerCommand>) {
     time(ui, app, commands);
     matter(ui, app, commands);
+    engine(ui, app, commands);
     ui.horizontal(|ui| {
         ui.label("Ground");
         for ground in GroundKind::ALL {
@@ -28,13 +29,37 @@ pub(super) fn show(ui: &mut Ui, app: &App, commands: &mut Vec<ViewerCommand>) {
     ui.weak("Pull a body with the left mouse button.");
 }
 
+/// The engine, and a ghost in the other one.
+fn engine(ui: &mut Ui, app: &App, commands: &mut Vec<ViewerCommand>) {
+    let present = app.sim.engine();
+    ui.horizontal(|ui| {
+        ui.label("Engine");
+        for engine in Engine::ALL {
+            let label = ui.selectable_label(engine == present, engine.title());
+            if label.on_hover_text("The characters begin anew in it.").clicked() {
+                commands.push(ViewerCommand::Engine(engine));
+            }
+        }
+    });
+    let ghost = GhostKind::Engine(present.other());
+    let mut shown = app.sim.ghost().is_some_and(|g| g.kind() == ghost);
+    let label = format!("Ghost in {}", present.other().title());
+    let told = "A second character from the same state, under the same commands, in the other engine.";
+    if ui.checkbox(&mut shown, label).on_hover_text(told).changed() {
+        commands.push(ViewerCommand::Ghost(shown.then_some(ghost)));
+    }
+}
+
 fn time(ui: &mut Ui, app: &App, commands: &mut Vec<ViewerCommand>) {
+    let engine = app.sim.engine();
+    let no_history = format!("{} keeps no history to go back to.", engine.title());
     ui.horizontal(|ui| {
         let (label, pause) = if app.clock.paused { ("Play", false) } else { ("Pause", true) };
         if ui.button(label).clicked() {
             commands.push(ViewerCommand::Pause(pause));
         }
-        if ui.button("Step back").clicked() {
+        let back = ui.add_enabled(engine.keeps_history(), egui::Button::new("Step back"));
+        if back.on_disabled_hover_text(&no_history).clicked() {
             commands.push(ViewerCommand::StepBack);
         }
         if ui.button("Step").clicked() {
@@ -49,7 +74,7 @@ fn time(ui: &mut Ui, app: &App, commands: &mut Vec<ViewerCommand>) {
     let mut ago = 0.0 - age as f32 * tick_secs;
     let reach = (kept as f32 * tick_secs).max(tick_secs);
     let slider = Slider::new(&mut ago, -reach..=0.0).text("seconds ago").fixed_decimals(2);
-    let moved = ui.add(slider).changed();
+    let moved = ui.add_enabled(engine.keeps_history(), slider).on_disabled_hover_text(&no_history).changed();
     let wanted = ((-ago / tick_secs).round() as usize).min(kept);
     // The slider rounds to what it shows: that alone is no wish to go back.
     if moved && wanted != age {

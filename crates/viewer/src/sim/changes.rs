@@ -1,9 +1,10 @@
 //! What changes a world between ticks: resets, settings, blend modes, ghosts, going back in time.
 
-use physics_bridge::{MAX_DISTANCE_M, Settings};
+use physics::PhysicsCharacter;
+use policy_core::contract::{MAX_DISTANCE_M, Settings};
 use policy_core::{BlendMode, GamepadState, GraphPosition, Heading};
 
-use super::{Ghost, LEAST_FRICTION, SimError, Simulation};
+use super::{Ghost, GhostKind, LEAST_FRICTION, SimError, Simulation};
 
 /// Way that a character must have before the end of the world, metres.
 const ROOM_M: f32 = 100.0;
@@ -57,7 +58,7 @@ impl Simulation {
             character.set_model(&model)?;
         }
         if let Some(ghost) = &mut self.ghost {
-            ghost.character_mut().set_model(&model)?;
+            ghost.set_settings(settings)?;
         }
         self.model = model;
         Ok(())
@@ -68,9 +69,13 @@ impl Simulation {
         self.steered.iter_mut().for_each(|steered| steered.controller.set_blend_mode(mode));
     }
 
-    /// A second character from the player's present state, under another blend mode.
-    pub fn start_ghost(&mut self, mode: BlendMode) {
-        self.ghost = Ghost::of(self.crowd.character(0), &self.steered[0], mode);
+    /// A second character from the player's present state, under another blend mode or in another engine.
+    ///
+    /// # Errors
+    /// When that engine can't load the body; nothing is changed then.
+    pub fn start_ghost(&mut self, kind: GhostKind) -> Result<(), SimError> {
+        self.ghost = Ghost::of(self.crowd.character(0), &self.steered[0], kind)?;
+        Ok(())
     }
 
     /// Ends the comparison.
@@ -81,7 +86,9 @@ impl Simulation {
     /// Starts the ghost again from the player's present state, if there is one.
     fn restart_ghost(&mut self) {
         if let Some(ghost) = self.ghost.take() {
-            self.start_ghost(ghost.mode());
+            let started = self.start_ghost(ghost.kind());
+            // The engine has loaded this body before.
+            debug_assert!(started.is_ok(), "{started:?}");
         }
     }
 

@@ -6,7 +6,7 @@
 pub enum SimError {
     /// The body, the ground or a setting.
     #[error(transparent)]
-    Model(#[from] physics_bridge::ModelError),
+    Model(#[from] physics::ModelError),
     /// The threads of the crowd.
     #[error(transparent)]
     Crowd(#[from] physics_bridge::CrowdError),
@@ -15,7 +15,7 @@ pub enum SimError {
     Pose(#[from] physics_bridge::PoseError),
     /// Settings of another ground.
     #[error(transparent)]
-    Settings(#[from] physics_bridge::ModelMismatch),
+    Settings(#[from] physics::ModelMismatch),
     /// Too many or too few characters.
     #[error("expected 1 to {} characters, found {found}", super::MAX_CHARACTERS)]
     Characters {

@@ -1,15 +1,28 @@
-//! The second character of the side-by-side comparison (the paper's figure 4): from the same state, under the same
-//! command, another blend mode.
+//! The second character of the side-by-side comparison: from the same state, under the same command, with one thing
+//! different: the blend mode (the paper's figure 4) or the physics engine.
 
 use glam::Vec2;
-use physics_bridge::{BodyPoses, Character};
+use physics::{Character, Engine, Model, ModelError, PhysicsCharacter};
+use physics_bridge::BodyPoses;
+use policy_core::contract::Settings;
 use policy_core::{BlendMode, CharacterState, Command, Controller};
 
+use super::steered::take_poses;
 use super::{SteeredCharacter, interpolated};
 
-/// A character that shows what another blend mode would do.
+/// What is different about a ghost.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum GhostKind {
+    /// Another blend mode.
+    Mode(BlendMode),
+    /// Another engine.
+    Engine(Engine),
+}
+
+/// A character that shows what another blend mode or engine would do.
 #[derive(Debug)]
 pub struct Ghost {
+    kind: GhostKind,
     character: Character,
     controller: Controller,
     state: CharacterState,
@@ -20,21 +33,40 @@ pub struct Ghost {
 
 impl Ghost {
     /// A ghost of `character`, which `steered` steers; `None` when its state can't be copied.
-    pub(super) fn of(character: &Character, steered: &SteeredCharacter, mode: BlendMode) -> Option<Self> {
-        let mut copy = Character::new(character.model());
-        copy.restore(&character.save()).ok()?;
+    ///
+    /// # Errors
+    /// When the other engine can't load the body.
+    pub(super) fn of(
+        character: &Character,
+        steered: &SteeredCharacter,
+        kind: GhostKind,
+    ) -> Result<Option<Self>, ModelError> {
         let mut controller = steered.controller.clone();
-        controller.set_blend_mode(mode);
-        let mut poses = BodyPoses::new(character.model().skeleton());
-        copy.poses_into(&mut poses);
-        let state = steered.state.clone();
-        Some(Self { character: copy, controller, state, poses: [poses.clone(), poses], broken: false })
+        let copied = match kind {
+            GhostKind::Mode(mode) => {
+                controller.set_blend_mode(mode);
+                copy(character)
+            }
+            GhostKind::Engine(engine) if engine == character.engine() => copy(character),
+            GhostKind::Engine(engine) => {
+                let mut other = Character::new(&Model::new(character.model().described(), engine)?);
+                let pose = character.pose();
+                other.set_pose(&pose.qpos, &pose.qvel).ok().map(|()| other)
+            }
+        };
+        let Some(character) = copied else { return Ok(None) };
+        let mut poses = BodyPoses::new(character.skeleton());
+        let mut state = steered.state.clone();
+        character.sense_into(&mut state);
+        take_poses(&state, &mut poses);
+        let poses = [poses.clone(), poses];
+        Ok(Some(Self { kind, character, controller, state, poses, broken: false }))
     }
 
-    /// Its blend mode.
+    /// What is different about it.
     #[must_use]
-    pub fn mode(&self) -> BlendMode {
-        self.controller.config().blend_mode
+    pub fn kind(&self) -> GhostKind {
+        self.kind
     }
 
     /// Horizontal speed of its root body, metres per second.
@@ -49,8 +81,16 @@ impl Ghost {
         self.broken || self.controller.report().fallen
     }
 
-    pub(super) fn character_mut(&mut self) -> &mut Character {
-        &mut self.character
+    /// Changes gravity, friction, strength and mass.
+    ///
+    /// # Errors
+    /// When a setting is out of its range; nothing is changed then.
+    pub(super) fn set_settings(&mut self, settings: Settings) -> Result<(), ModelError> {
+        let model = self.character.model().with_settings(settings)?;
+        // The model is one of its own.
+        let set = self.character.set_model(&model);
+        debug_assert!(set.is_ok(), "{set:?}");
+        Ok(())
     }
 
     pub(super) fn poses(&self, alpha: f32) -> BodyPoses {
@@ -65,9 +105,16 @@ impl Ghost {
         let here = self.state.root().position.truncate();
         let target = command.target.map(|t| t - player + here);
         let command = Command { target, ..*command };
-        self.broken = self.character.control_tick(&mut self.controller, &command, dt_secs).is_err();
+        self.character.actuate(self.controller.tick(&self.state, &command, dt_secs));
+        self.broken = self.character.step().is_err();
         self.character.sense_into(&mut self.state);
         self.poses.swap(0, 1);
-        self.character.poses_into(&mut self.poses[1]);
+        take_poses(&self.state, &mut self.poses[1]);
     }
+}
+
+/// A second character in the same state.
+fn copy(character: &Character) -> Option<Character> {
+    let mut copy = Character::new(character.model());
+    copy.restore(&character.save()).ok().map(|()| copy)
 }

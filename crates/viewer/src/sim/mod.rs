@@ -14,13 +14,15 @@ mod totals;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
-use physics_bridge::{Crowd, Diverged, Model, ReplayFile};
+use physics::{Character, Diverged, Model, PhysicsCharacter};
+use physics_bridge::{Crowd, ReplayFile};
 use policy_core::{
     Blend, BodyId, Button, CharacterPack, Command, CommandMapper, GamepadState, Goal, Heading, SkillId,
 };
 
 pub use error::SimError;
-pub use ghost::Ghost;
+pub use ghost::{Ghost, GhostKind};
+pub use physics::Engine;
 pub use physics_bridge::GroundKind;
 pub use playback::Playback;
 use rewind::PadRing;
@@ -58,8 +60,8 @@ pub struct Divergence {
     pub character: usize,
     /// What the physics said.
     pub what: String,
-    /// The state before, to be replayed.
-    pub replay: ReplayFile,
+    /// The state before, to be replayed, where the engine keeps it.
+    pub replay: Option<ReplayFile>,
 }
 
 /// Shoves the characters, away from the camera.
@@ -92,7 +94,7 @@ pub struct Simulation {
     config: SimConfig,
     pack: Arc<CharacterPack>,
     model: Model,
-    crowd: Crowd,
+    crowd: Crowd<Character>,
     steered: Vec<SteeredCharacter>,
     ghost: Option<Ghost>,
     playback: Option<Playback>,
@@ -182,7 +184,7 @@ impl Simulation {
         let describe = |(character, diverged): (usize, &Diverged)| Divergence {
             character,
             what: diverged.to_string(),
-            replay: (*diverged.replay).clone(),
+            replay: diverged.replay().cloned(),
         };
         let divergences: Vec<Divergence> = self.crowd.diverged().map(describe).collect();
         for (index, steered) in self.steered.iter_mut().enumerate() {

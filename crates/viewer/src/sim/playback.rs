@@ -2,6 +2,7 @@
 
 use std::path::Path;
 
+use physics::PhysicsCharacter;
 use physics_bridge::{BodyPoses, Character, Model, Pose};
 
 use super::{Simulation, interpolated};

@@ -2,7 +2,8 @@
 
 use std::sync::Arc;
 
-use physics_bridge::{BodyPoses, Character, Model};
+use physics::{Character, Engine};
+use physics_bridge::{BodyPoses, Model};
 use policy_core::{BlendMode, CharacterPack};
 
 use super::{Ghost, SimConfig, Simulation, SteeredCharacter, TickTimes, Totals};
@@ -17,7 +18,13 @@ impl Simulation {
     /// Ground and settings.
     #[must_use]
     pub fn model(&self) -> &Model {
-        &self.model
+        self.model.described()
+    }
+
+    /// The engine that the characters live in.
+    #[must_use]
+    pub fn engine(&self) -> Engine {
+        self.model.engine()
     }
 
     /// What it was made of.
@@ -41,7 +48,7 @@ impl Simulation {
     /// Length of a control tick, seconds.
     #[must_use]
     pub fn tick_secs(&self) -> f32 {
-        1.0 / self.model.control_hz()
+        1.0 / self.model().control_hz()
     }
 
     /// How the player's controller makes an action of a blend.

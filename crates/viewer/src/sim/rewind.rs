@@ -1,7 +1,8 @@
 //! The last seconds of a controller, kept beside those of its character's physics, so that both go back together and
 //! continue bit for bit.
 
-use physics_bridge::{Character, HISTORY_SECS};
+use physics::Character;
+use physics_bridge::HISTORY_SECS;
 use policy_core::{CharacterPack, ControllerState, GamepadState};
 
 /// All of a steered character that the next tick depends on, besides its physics.

@@ -3,7 +3,8 @@
 use std::sync::Arc;
 
 use glam::{Vec2, Vec3};
-use physics_bridge::{BodyPoses, Character, Crowd, GroundKind, HISTORY_SECS, Model, ModelError, Pose};
+use physics::{Character, Engine, Model, PhysicsCharacter};
+use physics_bridge::{BodyPoses, Crowd, GroundKind, HISTORY_SECS, ModelError, Pose};
 use policy_core::{Bindings, BlendMode, CharacterPack, CommandMapper, GamepadState, Heading};
 
 use super::rewind::PadRing;
@@ -22,19 +23,21 @@ const SPACING: f32 = 1.3;
 /// What a world is made of.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct SimConfig {
+    /// The physics.
+    pub engine: Engine,
     /// The ground.
     pub ground: GroundKind,
     /// Characters, 1 to [`MAX_CHARACTERS`].
     pub characters: usize,
     /// Places the hills and turns the crowd.
     pub seed: u32,
-    /// Keep the last ten seconds, to rewind to.
+    /// Keep the last ten seconds, to rewind to, where the engine can.
     pub history: bool,
 }
 
 impl Default for SimConfig {
     fn default() -> Self {
-        Self { ground: GroundKind::Flat, characters: 1, seed: 1, history: false }
+        Self { engine: Engine::default(), ground: GroundKind::Flat, characters: 1, seed: 1, history: false }
     }
 }
 
@@ -72,17 +75,19 @@ impl SimConfig {
 ///
 /// # Errors
 /// When the pack's MJCF is no character, or is not that of its skeleton.
-pub fn model_of(pack: &CharacterPack) -> Result<Model, ModelError> {
+pub fn model_of(pack: &CharacterPack) -> Result<physics_bridge::Model, ModelError> {
     match pack.mjcf() {
-        Some(_) => Model::for_pack(pack),
-        None => Model::from_mjcf_with_skeleton(assets::HUMANOID_MJCF, Arc::clone(pack.skeleton())),
+        Some(_) => physics_bridge::Model::for_pack(pack),
+        None => {
+            physics_bridge::Model::from_mjcf_with_skeleton(assets::HUMANOID_MJCF, Arc::clone(pack.skeleton()))
+        }
     }
 }
 
 /// Where the bodies are with all joints at zero and the root upright at the origin, metres.
 #[must_use]
-pub fn rest_positions(model: &Model) -> Vec<Vec3> {
-    let mut character = Character::new(model);
+pub fn rest_positions(model: &physics_bridge::Model) -> Vec<Vec3> {
+    let mut character = physics_bridge::Character::new(model);
     let mut poses = BodyPoses::new(model.skeleton());
     let Pose { qpos, qvel } = Pose::new(model.skeleton());
     character.set_pose(&qpos, &qvel).expect("zeros and an upright root are a pose");
@@ -92,7 +97,7 @@ pub fn rest_positions(model: &Model) -> Vec<Vec3> {
 
 /// The parts of a world that depend on its characters.
 struct Populated {
-    crowd: Crowd,
+    crowd: Crowd<Character>,
     steered: Vec<SteeredCharacter>,
     pads: PadRing,
     shove: Shove,
@@ -104,7 +109,9 @@ impl Simulation {
     /// # Errors
     /// When the pack's body can't be simulated, or the number of characters is out of range.
     pub fn new(pack: Arc<CharacterPack>, config: SimConfig) -> Result<Self, SimError> {
-        let model = model_of(&pack)?.with_terrain(config.ground.terrain(config.seed))?;
+        let described = model_of(&pack).map_err(physics::ModelError::from)?;
+        let model =
+            Model::new(&described, config.engine)?.with_terrain(config.ground.terrain(config.seed))?;
         let Populated { crowd, steered, pads, shove } =
             populate(&model, &pack, BlendMode::default(), config)?;
         let mapper = CommandMapper::new(&pack, &Bindings::default());
@@ -128,12 +135,13 @@ impl Simulation {
         })
     }
 
-    /// Begins anew with another ground or number of characters, and the same settings.
+    /// Begins anew with another engine, ground or number of characters, and the same settings.
     ///
     /// # Errors
-    /// When the number of characters is out of range; nothing is changed then.
+    /// When the number of characters is out of range, or the engine can't load the body; nothing is changed then.
     pub fn rebuild(&mut self, config: SimConfig) -> Result<(), SimError> {
-        let model = self.model.with_terrain(config.ground.terrain(config.seed))?;
+        let model =
+            Model::new(self.model(), config.engine)?.with_terrain(config.ground.terrain(config.seed))?;
         let populated = populate(&model, &self.pack, self.blend_mode(), config)?;
         self.config = config;
         self.replace(model, populated);
@@ -145,8 +153,9 @@ impl Simulation {
     /// # Errors
     /// When the pack's body can't be simulated; nothing is changed then.
     pub fn set_pack(&mut self, pack: Arc<CharacterPack>) -> Result<(), SimError> {
-        let model = model_of(&pack)?
-            .with_settings(self.model.settings())?
+        let described = model_of(&pack).map_err(physics::ModelError::from)?;
+        let model = Model::new(&described, self.config.engine)?
+            .with_settings(self.model().settings())?
             .with_terrain(self.config.ground.terrain(self.config.seed))?;
         let populated = populate(&model, &pack, self.blend_mode(), self.config)?;
         self.mapper = CommandMapper::new(&pack, &Bindings::default());
@@ -192,7 +201,7 @@ fn populate(
         body: skeleton.head().and_then(|head| skeleton.parent(head)).unwrap_or(skeleton.root()),
         least_height: LYING * steered[0].state.root_height(),
     };
-    let mut pads = PadRing::new(model.control_hz(), &GamepadState::default());
+    let mut pads = PadRing::new(model.described().control_hz(), &GamepadState::default());
     *pads.next() = GamepadState::default();
     Ok(Populated { crowd: Crowd::new(characters, None)?, steered, pads, shove })
 }

@@ -3,7 +3,8 @@
 use std::sync::Arc;
 
 use glam::Vec2;
-use physics_bridge::{BodyPoses, Character, Pose};
+use physics::{Character, PhysicsCharacter};
+use physics_bridge::{BodyPoses, Pose};
 use policy_core::{
     Arithmetic, BlendMode, CharacterPack, CharacterState, Command, Controller, ControllerConfig,
     ControllerState, Heading, StateError, TickReport,
@@ -34,10 +35,9 @@ pub struct SteeredCharacter {
 
 impl SteeredCharacter {
     pub(super) fn new(pack: Arc<CharacterPack>, mode: BlendMode, character: &Character) -> Self {
-        let model = character.model();
-        let skeleton = model.skeleton();
-        let history =
-            keeps_history(character).then(|| Box::new(Ring::new(model.control_hz(), &SavedTick::new(&pack))));
+        let skeleton = character.skeleton();
+        let history = keeps_history(character)
+            .then(|| Box::new(Ring::new(character.control_hz(), &SavedTick::new(&pack))));
         let mut steered = Self {
             state: CharacterState::new(skeleton),
             poses: [BodyPoses::new(skeleton), BodyPoses::new(skeleton)],
@@ -193,13 +193,21 @@ impl SteeredCharacter {
     fn take_pose(&mut self, character: &Character) {
         character.sense_into(&mut self.state);
         self.poses.swap(0, 1);
-        character.poses_into(&mut self.poses[1]);
+        take_poses(&self.state, &mut self.poses[1]);
     }
 }
 
 /// Controllers of the demo repeat bit for bit on every machine.
 fn config(mode: BlendMode) -> ControllerConfig {
     ControllerConfig { arithmetic: Arithmetic::Reproducible, blend_mode: mode, ..ControllerConfig::default() }
+}
+
+/// Writes where the bodies of a state are.
+pub(super) fn take_poses(state: &CharacterState, out: &mut BodyPoses) {
+    out.positions.clear();
+    out.positions.extend(state.bodies.iter().map(|body| body.position));
+    out.rotations.clear();
+    out.rotations.extend(state.bodies.iter().map(|body| body.rotation));
 }
 
 /// Poses `alpha` of the way from `a` to `b`, which have as many bodies.

@@ -6,14 +6,14 @@ use std::sync::Arc;
 use glam::{DMat3, DVec3};
 use mujoco_rs::wrappers::mj_data::MjData;
 use mujoco_rs::wrappers::mj_model::{MjModel, MjtObjBase};
-use policy_core::contract::{CONTROL_HZ, Pose};
+use policy_core::contract::{CONTROL_HZ, Pose, Settings};
 use policy_core::{CharacterPack, Skeleton};
 
 use super::{Model, Shared, Source};
 use crate::description::ground::Ground;
 use crate::description::layout::Layout;
 use crate::description::model_error::ModelError;
-use crate::description::settings::Settings;
+use crate::description::settings;
 use crate::description::shape::{Shape, shapes};
 use crate::description::terrain::Terrain;
 use crate::description::{file, mjcf, skeleton};
@@ -121,7 +121,7 @@ impl Model {
         let physics = if settings == Settings::default() {
             Arc::clone(&shared.base)
         } else {
-            Arc::new(settings.apply_to(&shared.base, &shared.layout)?)
+            Arc::new(settings::apply(&settings, &shared.base, &shared.layout)?)
         };
         Ok(Self { shared: Arc::clone(shared), physics, settings })
     }
