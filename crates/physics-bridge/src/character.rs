@@ -21,11 +21,12 @@ use policy_core::{BodyId, CharacterState, Heading};
 use self::history::History;
 use self::plausibility::Fault;
 use self::push::Pushes;
+use crate::cause::{Cause, Excess};
 use crate::description::model::Model;
 
 pub use self::contact::Contact;
-pub use self::diverged::{Cause, Diverged, Excess};
-pub use self::history::{HISTORY_SECS, NotRecorded};
+pub use self::diverged::Diverged;
+pub use self::history::HISTORY_SECS;
 pub use self::replay_file::{ReplayFile, ReplayFileError};
 pub use self::reset::ModelMismatch;
 pub use self::snapshot::{Snapshot, SnapshotMismatch, StateHash};

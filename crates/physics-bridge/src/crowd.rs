@@ -2,6 +2,7 @@
 //! result.
 
 mod control;
+mod worlds;
 
 use std::num::NonZeroUsize;
 
@@ -12,6 +13,8 @@ use rayon::{ThreadPool, ThreadPoolBuilder};
 
 use self::control::Batch;
 use crate::character::Character;
+
+pub use self::worlds::Worlds;
 
 /// Characters that are ticked together, of this crate or of another physics.
 ///
@@ -61,17 +64,22 @@ pub enum CrowdError {
     },
 }
 
+/// So many threads, by default one for every core.
+fn threads(count: Option<NonZeroUsize>) -> Result<ThreadPool, CrowdError> {
+    ThreadPoolBuilder::new()
+        .num_threads(count.map_or(0, NonZeroUsize::get))
+        .thread_name(|index| format!("crowd-{index}"))
+        .build()
+        .map_err(|source| CrowdError::Threads { source })
+}
+
 impl<C: PhysicsCharacter + Send> Crowd<C> {
     /// A crowd of `characters` on `threads`, by default one for every core. Allocates; ticks only where they say.
     ///
     /// # Errors
     /// When the system gives no threads.
     pub fn new(characters: Vec<C>, threads: Option<NonZeroUsize>) -> Result<Self, CrowdError> {
-        let pool = ThreadPoolBuilder::new()
-            .num_threads(threads.map_or(0, NonZeroUsize::get))
-            .thread_name(|index| format!("crowd-{index}"))
-            .build()
-            .map_err(|source| CrowdError::Threads { source })?;
+        let pool = self::threads(threads)?;
         let member = |character: C| {
             let sensed = CharacterState::new(character.skeleton());
             let targets = JointTargets::new(character.skeleton());

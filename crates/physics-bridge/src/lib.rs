@@ -1,8 +1,9 @@
-//! Characters of policy-core in MuJoCo: sense, actuate, step, save and restore, one or many.
+//! Characters of policy-core in MuJoCo: sense, actuate, step, save and restore; alone, in a shared world, or in crowds.
 //!
 //! A [`Model`] is an immutable description: body, ground, skeleton. Any number of characters share it. A
-//! [`Character`] is the mutable state of one body. A [`Crowd`] steps many of them on all cores. The modules are
-//! layered in this order and import downwards only.
+//! [`Character`] is the mutable state of one body alone. A [`World`] holds many characters, props and fixtures that
+//! touch each other. A [`Crowd`] steps many characters apart on all cores. The modules are on three floors that import
+//! downwards only: descriptions, one simulation, many simulations.
 //!
 //! ```
 //! # fn main() -> Result<(), Box<dyn std::error::Error>> {
@@ -35,23 +36,40 @@
 //! into the working folder. A program that also uses mujoco-rs by itself loads its first [`Model`] before it starts
 //! threads.
 
+mod cause;
 mod character;
 mod crowd;
 mod description;
+mod kinematics;
+mod ring;
+mod world;
 
+pub use cause::{Cause, Excess};
 pub use character::{
-    Cause, Character, Contact, Diverged, Excess, HISTORY_SECS, ModelMismatch, NotRecorded, ReplayFile,
-    ReplayFileError, Snapshot, SnapshotMismatch, StateHash,
+    Character, Contact, Diverged, HISTORY_SECS, ModelMismatch, ReplayFile, ReplayFileError, Snapshot,
+    SnapshotMismatch, StateHash,
 };
-pub use crowd::{Crowd, CrowdError};
+pub use crowd::{Crowd, CrowdError, Worlds};
 pub use description::body_poses::BodyPoses;
+pub use description::fixture::{Fixture, FixtureShape, MAX_HEIGHTS, MAX_TRIANGLES, TRIANGLE_DEPTH_M};
 pub use description::ground_kind::GroundKind;
+pub use description::joint::{DAMPING_RANGE, Joint, ROPE_RANGE_M};
 pub use description::model::Model;
 pub use description::model_error::ModelError;
+pub use description::prop::{
+    FRICTION_RANGE, MASS_RANGE_KG, MAX_HULL_POINTS, Motion, Prop, SIZE_RANGE_M, Solid,
+};
 pub use description::shape::{Shape, ShapeKind};
 pub use description::terrain::Terrain;
+pub use description::world_error::WorldError;
 /// What policy-core says of every physics of a character.
 pub use policy_core::contract::{
     CONTROL_HZ, HeightField, MAX_DEPTH_M, MAX_DISTANCE_M, MAX_PUSHED_MPS, MAX_SPEED_MPS, MAX_SPIN_RADPS,
     PhysicsCharacter, Pose, PoseError, PushError, SettingError, Settings, WALKING_START_MPS,
+};
+pub use ring::NotRecorded;
+pub use world::{
+    CharacterHandle, Divergence, Diverging, FixtureHandle, Grab, GrabHandle, Handle, JointHandle,
+    LayoutMismatch, MAX_GRABS, Movable, Part, PropHandle, RayHit, Remedy, StageTimes, World, WorldContact,
+    WorldEdit, WorldSnapshot, measure_stages,
 };

@@ -5,7 +5,8 @@ mod common;
 use std::num::NonZeroUsize;
 
 use common::{hash, humanoid, wriggle_into};
-use physics_bridge::{Cause, Character, Crowd};
+use glam::Vec3;
+use physics_bridge::{Cause, Character, Crowd, Motion, Prop, World, Worlds};
 use policy_core::{CharacterState, Heading, JointTargets};
 
 const COUNT: usize = 11;
@@ -111,4 +112,41 @@ fn an_empty_crowd_ticks() {
     let mut crowd: Crowd = Crowd::new(Vec::new(), None).unwrap();
     assert!(crowd.is_empty());
     assert_eq!(crowd.tick(|_, _, _| ()), 0);
+}
+
+#[test]
+fn threads_change_no_bit_of_worlds() {
+    let model = humanoid();
+    let run = |threads| {
+        let world = |index: usize| {
+            let mut world = World::new(&model).unwrap();
+            world
+                .edit(|edit| {
+                    for x in 0..2 {
+                        let x = 0.4 * x as f32;
+                        edit.add_character(&model, x, 0.1 * index as f32, Heading::FORWARD, 0.5)?;
+                    }
+                    edit.add_prop(Prop::cube(0.3, 3.0), Motion::at(Vec3::new(0.2, 0.0, 2.0)))
+                })
+                .unwrap();
+            world
+        };
+        let mut worlds = Worlds::new((0..5).map(world).collect(), NonZeroUsize::new(threads)).unwrap();
+        let mut ticks = [0; 5];
+        for _ in 0..20 {
+            let diverged = worlds.tick_with(&mut ticks, |index, tick, world| {
+                let mut targets = JointTargets::new(model.skeleton());
+                wriggle_into(*tick + index as u64, &mut targets);
+                *tick += 1;
+                let characters: Vec<_> = world.characters().collect();
+                characters.into_iter().for_each(|who| world.actuate(who, &targets).unwrap());
+                world.step()
+            });
+            assert_eq!(diverged, 0);
+        }
+        worlds.worlds().iter().map(|world| world.save().hash()).collect::<Vec<_>>()
+    };
+    let one = run(1);
+    assert_eq!(one, run(3));
+    assert!(one[0] != one[1], "each is its own");
 }

@@ -9,8 +9,10 @@ use std::sync::atomic::{AtomicU64, Ordering};
 
 use common::{body, humanoid, made_up_pack, quadruped, wriggle_into};
 use glam::Vec3;
-use physics_bridge::{BodyPoses, Character, Crowd, HISTORY_SECS, Terrain};
-use policy_core::{CharacterState, Command, Controller, Goal, JointTargets, NodeId};
+use physics_bridge::{
+    BodyPoses, Character, Crowd, Fixture, HISTORY_SECS, Motion, Movable, Prop, Solid, Terrain, World,
+};
+use policy_core::{BodyId, CharacterState, Command, Controller, Goal, Heading, JointTargets, NodeId};
 
 struct Counting;
 
@@ -43,6 +45,8 @@ fn allocations(work: impl FnOnce()) -> u64 {
 fn ticks_allocate_nothing() {
     assert!(allocations(|| drop(std::hint::black_box(vec![0u8; 100]))) > 0, "the counter counts");
     a_character_allocates_nothing();
+    // Before any crowd: the threads of one that was dropped may still be ending.
+    a_world_allocates_nothing();
     control_ticks_allocate_nothing();
     a_crowd_allocates_no_more_with_more_characters();
 }
@@ -119,4 +123,51 @@ fn a_crowd_allocates_no_more_with_more_characters() {
         let found = allocations(|| run(TICKS));
         assert!(found <= TICKS / 16, "{found} allocations in {TICKS} ticks of {count} characters");
     }
+}
+
+/// Also when something diverges, and when a reserved ball is thrown by an impulse.
+fn a_world_allocates_nothing() {
+    let model = quadruped();
+    let pack = Arc::new(made_up_pack(model.skeleton(), None, model.actuation()));
+    let mut world = World::new(&model).unwrap();
+    let (character, other, crate_, balls) = world
+        .edit(|edit| {
+            let place = |x: f32| Motion::at(Vec3::new(x, 3.0, 1.0));
+            let character = edit.add_character(&model, 0.0, 0.0, Heading::FORWARD, 0.0)?;
+            let other = edit.add_character(&model, 2.0, 0.0, Heading::FORWARD, 0.0)?;
+            let crate_ = edit.add_prop(Prop::cube(0.4, 5.0), place(1.0))?;
+            let balls = (0..4).map(|i| edit.add_prop(Prop::ball(0.1, 1.0), place(i as f32 + 5.0)));
+            let balls = balls.collect::<Result<Vec<_>, _>>()?;
+            let half_extents = Vec3::new(2.0, 2.0, 0.1);
+            edit.add_fixture(Fixture::new(Solid::Cuboid { half_extents }, Vec3::new(2.0, 0.0, 0.0)))?;
+            Ok((character, other, crate_, balls))
+        })
+        .unwrap();
+    world.record_history(HISTORY_SECS);
+    let command = Command { goal: Goal::Node(NodeId::new(2)), ..Command::default() };
+    let mut players = [character, other].map(|handle| (handle, Controller::new(pack.clone()), command));
+    let mut saved = world.save();
+    let (mut state, mut poses) = (CharacterState::new(model.skeleton()), BodyPoses::new(model.skeleton()));
+    world.control_tick(&mut players, 1.0 / 30.0);
+    let mut diverged = 0;
+    let count = allocations(|| {
+        for tick in 0..60 {
+            diverged += world.control_tick(&mut players, 1.0 / 30.0);
+            world.sense_into(character, &mut state).unwrap();
+            world.poses_into(character, &mut poses).unwrap();
+            world.push(Movable::Body(other, BodyId::new(1)), Vec3::X * 30.0, 0.1).unwrap();
+            world.ray(Vec3::Z * 3.0, Vec3::X, 10.0, None).unwrap();
+            if tick % 20 == 5 {
+                // Faster than anything can be: it is taken out.
+                world.impulse(balls[tick / 20], Vec3::X * 1e5).unwrap();
+            }
+            let grab = world.grab(crate_, Vec3::new(1.0, 3.0, 1.0), 100.0).unwrap();
+            world.move_grab(grab, Vec3::new(1.0, 3.0, 2.0)).unwrap();
+            world.release(grab).unwrap();
+            world.save_into(&mut saved);
+        }
+        world.rewind_to(30).unwrap();
+        world.restore(&saved).unwrap();
+    });
+    assert_eq!((count, diverged), (0, 3));
 }

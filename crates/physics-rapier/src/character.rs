@@ -146,7 +146,7 @@ impl Character {
             world.step();
         }
         sense_into(world, articulation, &mut self.after);
-        if let Some(diverged) = diverged::check(articulation.model().skeleton(), &self.after, self.tick) {
+        if let Err(diverged) = Diverged::check(articulation.model().skeleton(), &self.after, self.tick) {
             let targets = articulation.targets().to_vec();
             let before = self.before.clone();
             self.restart(&before.qpos, &before.qvel);

@@ -21,7 +21,7 @@ use crate::report::{StateFault, TickReport};
 use crate::scorer::Scorer;
 use crate::skill::SkillEnd;
 use crate::state::{CharacterState, JointTargets};
-use crate::steering::{Course, Steering};
+use crate::steering::{Steering, SteeringState};
 use crate::turn_assist::TurnAssist;
 
 mod skills;
@@ -333,10 +333,10 @@ impl Controller {
     fn steered(&mut self, state: &CharacterState, target: Option<Vec2>, dt: f32) -> Option<Vec2> {
         let steering = self.config.steering.filter(|_| self.state.report.skill.is_none());
         let (Some(steering), Some(target)) = (steering, target) else {
-            self.state.course = Course::default();
+            self.state.steering = SteeringState::default();
             return target;
         };
-        Some(steering.adjusted(&mut self.state.course, state, target, dt))
+        Some(steering.adjusted(&mut self.state.steering, state, target, dt))
     }
 
     fn observe(&mut self, state: &CharacterState, command: &Command, dt: f32) {

@@ -13,7 +13,7 @@ use crate::pack::CharacterPack;
 use crate::path::GraphPosition;
 use crate::report::TickReport;
 use crate::state::JointTargets;
-use crate::steering::Course;
+use crate::steering::SteeringState;
 
 /// State of one [`Controller`](crate::Controller). Made once for a pack, then overwritten by
 /// [`Controller::save_into`](crate::Controller::save_into).
@@ -33,7 +33,7 @@ pub struct ControllerState {
     /// Seconds that the pending skill has waited.
     pub(crate) pending_secs: f32,
     /// What steering remembers.
-    pub(crate) course: Course,
+    pub(crate) steering: SteeringState,
 }
 
 /// Why a state can't be restored. The controller is unchanged.
@@ -81,7 +81,7 @@ impl ControllerState {
             handover_from: alloc::vec![0.0; skeleton.joint_count()],
             handover_secs: 0.0,
             pending_secs: 0.0,
-            course: Course::default(),
+            steering: SteeringState::default(),
         }
     }
 
@@ -106,7 +106,7 @@ impl ControllerState {
         self.handover_from.copy_from_slice(&other.handover_from);
         self.handover_secs = other.handover_secs;
         self.pending_secs = other.pending_secs;
-        self.course = other.course;
+        self.steering = other.steering;
     }
 
     /// Makes it the state of a new controller again.
@@ -120,7 +120,7 @@ impl ControllerState {
         self.handover_from.fill(0.0);
         self.handover_secs = 0.0;
         self.pending_secs = 0.0;
-        self.course = Course::default();
+        self.steering = SteeringState::default();
     }
 
     pub(crate) fn same_size(&self, other: &Self) -> bool {
@@ -157,8 +157,8 @@ impl ControllerState {
         field("skill", "skills of the pack", all)?;
         let mut numbers = self.targets.iter().chain(&self.handover_from).chain(self.history.parts().0);
         let times = [self.fall.low_seconds, self.fall.rising_seconds, self.handover_secs, self.pending_secs];
-        let course = [self.course.velocity.x, self.course.velocity.y, self.course.trim];
-        let finite = numbers.all(|n| n.is_finite()) && times.iter().chain(&course).all(|t| t.is_finite());
+        let steering = [self.steering.velocity.x, self.steering.velocity.y, self.steering.trim];
+        let finite = numbers.all(|n| n.is_finite()) && times.iter().chain(&steering).all(|t| t.is_finite());
         field("numbers", "finite numbers", finite)?;
         let progress = r.skill.map_or([0.0; 2], |s| [s.seconds, s.held_seconds]);
         let counted = progress.iter().all(|n| n.is_finite()) && r.target.iter().all(|n| n.is_finite());

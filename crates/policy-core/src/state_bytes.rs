@@ -50,8 +50,8 @@ impl ControllerState {
         w.floats(&self.targets);
         w.floats(&self.handover_from);
         w.floats(&[self.handover_secs, self.pending_secs]);
-        let course = self.course;
-        w.floats(&[course.velocity.x, course.velocity.y, course.trim]);
+        let steering = self.steering;
+        w.floats(&[steering.velocity.x, steering.velocity.y, steering.trim]);
         debug_assert_eq!(w.at, w.out.len());
     }
 
@@ -90,7 +90,7 @@ impl ControllerState {
         r.floats(&mut self.targets);
         r.floats(&mut self.handover_from);
         (self.handover_secs, self.pending_secs) = (r.float(), r.float());
-        (self.course.velocity.x, self.course.velocity.y, self.course.trim) =
+        (self.steering.velocity.x, self.steering.velocity.y, self.steering.trim) =
             (r.float(), r.float(), r.float());
         Ok(())
     }

@@ -40,7 +40,7 @@ impl Default for Steering {
 
 /// What steering remembers from tick to tick.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub(crate) struct Course {
+pub(crate) struct SteeringState {
     /// Low-passed horizontal velocity of the root, world, metres per second.
     pub(crate) velocity: Vec2,
     /// Angle that is added against drift, radians.
@@ -50,11 +50,17 @@ pub(crate) struct Course {
 impl Steering {
     /// The target turned about the root so that the course goes to where it lies.
     #[must_use]
-    pub(crate) fn adjusted(self, course: &mut Course, state: &CharacterState, target: Vec2, dt: f32) -> Vec2 {
+    pub(crate) fn adjusted(
+        self,
+        memory: &mut SteeringState,
+        state: &CharacterState,
+        target: Vec2,
+        dt: f32,
+    ) -> Vec2 {
         let root = state.root();
         let now = root.linear_velocity.truncate();
         let share = if self.velocity_secs > 0.0 { (dt / self.velocity_secs).min(1.0) } else { 1.0 };
-        course.velocity += (now - course.velocity) * share;
+        memory.velocity += (now - memory.velocity) * share;
         let to_target = target - root.position.truncate();
         let distance = libm::sqrtf(to_target.length_squared());
         if !(distance.is_finite() && distance > 1e-3) {
@@ -62,18 +68,18 @@ impl Steering {
         }
         let wanted = Heading::from_direction(to_target).angle();
         let off_heading = wrapped(wanted - Heading::from_rotation(root.rotation).angle());
-        let speed = libm::sqrtf(course.velocity.length_squared());
-        let off_course = wrapped(wanted - Heading::from_direction(course.velocity).angle());
+        let speed = libm::sqrtf(memory.velocity.length_squared());
+        let off_course = wrapped(wanted - Heading::from_direction(memory.velocity).angle());
         let moving = ((speed - LEAST_SPEED) / (FULL_SPEED - LEAST_SPEED)).clamp(0.0, 1.0);
         // Facing away, what counts is the side to turn to, not where the momentum of the old direction still leads.
         let error = if libm::fabsf(off_heading) > DRIFT_RADIANS { off_heading } else { moving * off_course };
         if libm::fabsf(off_heading) < DRIFT_RADIANS && libm::fabsf(off_course) < DRIFT_RADIANS {
             let limit = self.trim_limit_radians;
-            let trim = course.trim + moving * off_course * self.trim_per_second * dt;
-            course.trim = if trim.is_finite() { trim.max(-limit).min(limit) } else { 0.0 };
+            let trim = memory.trim + moving * off_course * self.trim_per_second * dt;
+            memory.trim = if trim.is_finite() { trim.max(-limit).min(limit) } else { 0.0 };
         }
         let largest = libm::fabsf(off_heading).max(LARGEST_RADIANS);
-        let asked = (off_heading + self.lead * error + course.trim).clamp(-largest, largest);
+        let asked = (off_heading + self.lead * error + memory.trim).clamp(-largest, largest);
         let turned = Heading::from_angle(asked - off_heading);
         root.position.truncate() + turned.world_from_heading_2d(to_target)
     }

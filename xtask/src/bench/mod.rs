@@ -47,6 +47,14 @@ enum Subject {
         #[arg(long)]
         json: bool,
     },
+    /// How much faster than real time 64 characters and 200 props share one world on one core, and how many characters
+    /// apart run in real time on all cores.
+    World {
+        /// Print one JSON object: realtime_factor, step_ms, characters_apart_realtime, build_ms, touching, and
+        /// milliseconds a step of MuJoCo's stages.
+        #[arg(long)]
+        json: bool,
+    },
     /// Microseconds of a physics step in Rapier and in MuJoCo, and of the Bevy plug-in's tick with 1 and 20 characters.
     Engines {
         /// Print one JSON object: rapier_step_us, mujoco_step_us, bevy_tick_us_1, bevy_tick_us_20.
@@ -75,6 +83,7 @@ pub fn run(workspace: &Workspace, arguments: &BenchArgs) -> Result<()> {
             let promised = ["characters_realtime", "bare_mujoco_characters", "policy_share"];
             (json, demo_bench(workspace, "bench-crowd", &promised)?)
         }
+        Subject::World { json } => (json, world_bench(workspace)?),
         Subject::Frame { json } => {
             (json, demo_bench(workspace, "bench-frame", &["fps_1", "fps_100", "adapter"])?)
         }
@@ -92,6 +101,14 @@ fn demo_bench(workspace: &Workspace, verb: &str, promised: &[&str]) -> Result<Ma
     let arguments = ["run", "--release", "-p", "viewer", "--bin", "policy-space", "--", verb, "--json"];
     let text = output_of(workspace.cargo().args(arguments))?;
     parse_figures(&text, promised).with_context(|| format!("read what `policy-space {verb} --json` wrote"))
+}
+
+/// Runs the benchmark of physics-bridge's shared world and checks that it returns the promised figures.
+fn world_bench(workspace: &Workspace) -> Result<Map<String, Value>> {
+    let arguments = ["bench", "-p", "physics-bridge", "--bench", "world", "--", "--json"];
+    let text = output_of(workspace.cargo().args(arguments))?;
+    parse_figures(&text, &["realtime_factor", "step_ms", "characters_apart_realtime"])
+        .context("read what the benchmark `world` wrote")
 }
 
 fn parse_figures(text: &str, promised: &[&str]) -> Result<Map<String, Value>> {

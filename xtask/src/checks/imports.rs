@@ -45,19 +45,9 @@ const RULES: &[Rule] = &[
         &[],
     ),
     rule("viewer", &["policy-core", "physics", "physics-bridge", "gamepad", "files", "pca"], &[]),
-    rule("bevy-plugin", &["policy-core"], &["physics-bridge"]),
     rule(
         "integration-tests",
-        &[
-            "policy-core",
-            "gamepad",
-            "physics-bridge",
-            "physics-rapier",
-            "clips",
-            "trainer",
-            "viewer",
-            "bevy-plugin",
-        ],
+        &["policy-core", "gamepad", "physics-bridge", "physics-rapier", "clips", "trainer", "viewer"],
         &[],
     ),
     rule("xtask", &[], &[]),
@@ -90,7 +80,7 @@ const OWNED: &[Owned] = &[
     owned("egui*", &["viewer"], DRAWS),
     owned("gltf", &["viewer"], DRAWS),
     owned("gemm", &["trainer"], "only trainer learns"),
-    owned("bevy*", &["bevy-plugin"], "only bevy-plugin knows an engine"),
+    owned("bevy*", &[], "only engines/bevy knows Bevy, in a workspace of its own"),
 ];
 
 /// Crates of the workspace below which, at any depth, none of these may lie.

@@ -40,7 +40,6 @@ fn the_architecture_as_drawn_has_no_breach() {
             ("evaluation", &[("policy-core", "normal"), ("physics-bridge", "normal"), ("pca", "normal")]),
             ("trainer", &[("evaluation", "normal"), ("gemm", "normal")]),
             ("viewer", &[("policy-core", "normal"), ("physics-bridge", "normal"), ("egui-wgpu", "normal")]),
-            ("bevy-plugin", &[("policy-core", "normal"), ("physics-bridge", "dev"), ("bevy_app", "normal")]),
             ("xtask", &[("clap", "normal")]),
         ],
         &[("mujoco-rs", &[]), ("clap", &[])],
@@ -57,7 +56,7 @@ fn a_crate_of_the_workspace_is_imported_only_where_allowed() {
             ("trainer", &[("viewer", "dev"), ("evaluation", "normal")]),
             ("evaluation", &[("trainer", "dev")]),
             ("viewer", &[("trainer", "normal")]),
-            ("bevy-plugin", &[("physics-bridge", "normal")]),
+            ("physics-rapier", &[("physics-bridge", "normal")]),
             ("physics-bridge", &[]),
         ],
         &[],
@@ -65,8 +64,8 @@ fn a_crate_of_the_workspace_is_imported_only_where_allowed() {
     assert_eq!(
         breaches(&metadata).unwrap(),
         [
-            "bevy-plugin imports physics-bridge",
             "evaluation imports trainer",
+            "physics-rapier imports physics-bridge",
             "policy-core imports gamepad",
             "trainer imports viewer",
             "viewer imports trainer",

@@ -1,5 +1,6 @@
 //! Every check that CI runs, quick ones first. All of them run, whatever fails; a table says how each ended.
 
+pub mod bevy;
 mod c_interface;
 mod definitions;
 mod deny;

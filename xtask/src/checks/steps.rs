@@ -5,7 +5,7 @@ use std::process::Command;
 
 use anyhow::{Result, bail};
 
-use super::{Step, Verdict, c_interface, deny, imports, words};
+use super::{Step, Verdict, bevy, c_interface, deny, imports, words};
 use crate::workspace::{Workspace, answers, output_of, run};
 
 /// The checks that cargo-deny does.
@@ -34,6 +34,7 @@ pub const ALL: &[Step] = &[
     Step { name: "bits without vector units", run: plain_bits },
     Step { name: "clippy", run: clippy },
     C_PROGRAM,
+    Step { name: "engines/bevy: no window", run: bevy::check },
     Step { name: "documentation", run: documentation },
     Step { name: "tests", run: tests },
 ];

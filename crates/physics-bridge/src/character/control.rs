@@ -3,6 +3,7 @@
 use policy_core::{CharacterState, Command, Controller};
 
 use super::{Character, Diverged};
+use crate::kinematics::sense_into;
 
 impl Character {
     /// Runs one control tick: senses the character, lets `controller` make joint targets of the state and of
@@ -33,6 +34,7 @@ impl Character {
 
     /// Updates [`Character::sensed`].
     pub(crate) fn sense(&mut self) {
-        super::sense::sense_into(&self.data, &self.model, &mut self.sensed);
+        let model = &self.model;
+        sense_into(&self.data, model.layout(), |x, y| model.height_at(x, y), &mut self.sensed);
     }
 }

@@ -11,8 +11,8 @@ use serde::{Deserialize, Serialize};
 use std::sync::Arc;
 
 use super::Character;
-use super::sense::{velocity_at, velocity_reference};
 use crate::description::layout::Layout;
+use crate::kinematics::{velocity_at, velocity_reference};
 
 /// The pushes under way, one entry for each body. World axes, at the centre of mass of each body.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]

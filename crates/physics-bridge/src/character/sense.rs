@@ -1,16 +1,12 @@
 //! What can be read of a character without changing it.
 
 use glam::{DMat3, DVec3, Vec3};
-use mujoco_rs::wrappers::mj_data::MjData;
-use mujoco_rs::wrappers::mj_model::MjModel;
 use policy_core::contract::Pose;
 use policy_core::{BodyId, CharacterState};
-use std::sync::Arc;
 
 use super::{Character, Contact};
-use crate::description::body_poses::{BodyPoses, rotation};
-use crate::description::layout::Layout;
-use crate::description::model::Model;
+use crate::description::body_poses::BodyPoses;
+use crate::kinematics::{poses_into, sense_into, velocity_at, velocity_reference};
 
 impl Character {
     /// Writes what a policy senses: motion of the body frames in world axes, joint velocities, and the
@@ -19,17 +15,12 @@ impl Character {
         if !out.fits(self.model.skeleton()) {
             *out = CharacterState::new(self.model.skeleton());
         }
-        sense_into(&self.data, &self.model, out);
+        sense_into(&self.data, self.model.layout(), |x, y| self.model.height_at(x, y), out);
     }
 
     /// Writes where the bodies are. Allocates only when `out` was made for another skeleton.
     pub fn poses_into(&self, out: &mut BodyPoses) {
-        let (xpos, xquat) = (self.data.xpos(), self.data.xquat());
-        let ids = &self.model.layout().body_ids;
-        out.positions.clear();
-        out.positions.extend(ids.iter().map(|&id| DVec3::from(xpos[id]).as_vec3()));
-        out.rotations.clear();
-        out.rotations.extend(ids.iter().map(|&id| rotation(xquat[id])));
+        poses_into(&self.data, self.model.layout(), out);
     }
 
     /// Position and velocity now, in full precision. Allocates; see [`Character::pose_into`].
@@ -114,37 +105,4 @@ impl Character {
         }
         clearance as f32
     }
-}
-
-/// Writes what a policy senses into a state of the model's skeleton.
-pub(super) fn sense_into(data: &MjData<Arc<MjModel>>, model: &Model, out: &mut CharacterState) {
-    let layout = model.layout();
-    let (xpos, xquat, cvel) = (data.xpos(), data.xquat(), data.cvel());
-    let reference = velocity_reference(data, layout);
-    for (body, &id) in out.bodies.iter_mut().zip(&layout.body_ids) {
-        let position = DVec3::from(xpos[id]);
-        let (angular, linear) = velocity_at(cvel[id], position - reference);
-        body.position = position.as_vec3();
-        body.rotation = rotation(xquat[id]);
-        body.linear_velocity = linear.as_vec3();
-        body.angular_velocity = angular.as_vec3();
-    }
-    let qvel = data.qvel();
-    for (velocity, joint) in out.joint_velocities.iter_mut().zip(&layout.joints) {
-        *velocity = qvel[joint.dof] as f32;
-    }
-    let root = out.root().position;
-    out.ground_height = model.height_at(root.x, root.y);
-}
-
-/// The point that MuJoCo's body velocities are of: it moves with the body, and is now where the centre of mass of
-/// the whole character is.
-pub(super) fn velocity_reference(data: &MjData<Arc<MjModel>>, layout: &Layout) -> DVec3 {
-    DVec3::from(data.subtree_com()[layout.body_ids[0]])
-}
-
-/// Angular velocity, and linear velocity `offset` away from the reference point.
-pub(super) fn velocity_at([wx, wy, wz, vx, vy, vz]: [f64; 6], offset: DVec3) -> (DVec3, DVec3) {
-    let angular = DVec3::new(wx, wy, wz);
-    (angular, DVec3::new(vx, vy, vz) + angular.cross(offset))
 }

@@ -65,6 +65,27 @@ impl Layout {
         })
     }
 
+    /// Of a character that was attached to a larger model, its names behind `prefix`. `bodies` stays empty.
+    pub(crate) fn attached(model: &MjModel, skeleton: &Skeleton, prefix: &str) -> Result<Self, ModelError> {
+        let body_id = |body: &str| {
+            let missing = || ModelError::Missing { kind: "body", name: quoted(body) };
+            model.name_to_id(MjtObjBase::mjOBJ_BODY, &format!("{prefix}{body}")).ok_or_else(missing)
+        };
+        let body_ids = skeleton.bodies().iter().map(|b| body_id(&b.name)).collect::<Result<Box<[_]>, _>>()?;
+        // MuJoCo has compiled the model: what it says of its parts are indices of its own arrays.
+        let free = model.body_jntadr()[body_ids[0]] as usize;
+        let place = |joint: &policy_core::training::SkeletonJoint| {
+            place(model, &format!("{prefix}{}", joint.name), joint.body)
+        };
+        Ok(Self {
+            body_ids,
+            bodies: Box::default(),
+            root_qpos: model.jnt_qposadr()[free] as usize,
+            root_dof: model.jnt_dofadr()[free] as usize,
+            joints: skeleton.joints().iter().map(place).collect::<Result<_, _>>()?,
+        })
+    }
+
     /// Writes MuJoCo's `qpos` in our order.
     pub(crate) fn our_qpos(&self, theirs: &[f64], ours: &mut [f64]) {
         let (root, hinges) = ours.split_at_mut(ROOT_QPOS);
@@ -92,6 +113,19 @@ impl Layout {
             .iter()
             .zip(&self.joints)
             .for_each(|(&velocity, joint)| theirs[joint.dof] = velocity);
+    }
+
+    /// Multiplies the stiffness and the greatest torque of every motor.
+    pub(crate) fn scale_strength(&self, model: &mut MjModel, strength: f64) {
+        for actuator in self.joints.iter().map(|joint| joint.actuator) {
+            // SAFETY: only motors of fixed gain are accepted, whose first gain parameter is a factor: MuJoCo uses
+            // it as an index of nothing.
+            unsafe { model.actuator_gainprm_mut()[actuator][0] *= strength };
+            let [_, position, velocity, ..] = &mut model.actuator_biasprm_mut()[actuator];
+            *position *= strength;
+            *velocity *= strength;
+            model.actuator_forcerange_mut()[actuator].iter_mut().for_each(|f| *f *= strength);
+        }
     }
 
     /// How the motors of a compiled model are driven.

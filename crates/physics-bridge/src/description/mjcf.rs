@@ -41,7 +41,7 @@ pub(crate) fn compile(mjcf: &str, terrain: &Terrain) -> Result<MjModel, ModelErr
 }
 
 /// Puts a height field with the floor's contact properties into the world, and the floor below it.
-fn add_height_field(spec: &mut MjSpec, grid: &Grid) -> Result<(), ModelError> {
+pub(crate) fn add_height_field(spec: &mut MjSpec, grid: &Grid) -> Result<(), ModelError> {
     if spec.hfield(HEIGHT_FIELD).is_some() || spec.geom(HEIGHT_FIELD).is_some() {
         return Err(ModelError::Kind {
             kind: "geom",

@@ -63,6 +63,8 @@ struct Shared {
     shape_geoms: Box<[usize]>,
     substeps: u32,
     stand: Pose,
+    /// Height of the root above flat ground when a standing character touches it, metres.
+    stand_lift: f64,
 }
 
 impl Model {
@@ -162,6 +164,11 @@ impl Model {
     /// A standing character at rest, in our order; its place means nothing.
     pub(crate) fn stand(&self) -> &Pose {
         &self.shared.stand
+    }
+
+    /// Height of the root above flat ground when a standing character touches it, metres.
+    pub(crate) fn stand_lift(&self) -> f64 {
+        self.shared.stand_lift
     }
 
     pub(crate) fn physics(&self) -> &Arc<MjModel> {

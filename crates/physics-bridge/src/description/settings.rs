@@ -13,16 +13,7 @@ pub(crate) fn apply(settings: &Settings, base: &MjModel, layout: &Layout) -> Res
     let mut model = base.clone();
     model.opt_mut().gravity.iter_mut().for_each(|g| *g *= f64::from(settings.gravity));
     model.geom_friction_mut().iter_mut().for_each(|[slide, ..]| *slide *= f64::from(settings.friction));
-    let strength = f64::from(settings.strength);
-    for actuator in layout.joints.iter().map(|joint| joint.actuator) {
-        // SAFETY: `Layout::of` accepts only motors of fixed gain, whose first gain parameter is a
-        // factor: MuJoCo uses it as an index of nothing.
-        unsafe { model.actuator_gainprm_mut()[actuator][0] *= strength };
-        let [_, position, velocity, ..] = &mut model.actuator_biasprm_mut()[actuator];
-        *position *= strength;
-        *velocity *= strength;
-        model.actuator_forcerange_mut()[actuator].iter_mut().for_each(|f| *f *= strength);
-    }
+    layout.scale_strength(&mut model, settings.strength.into());
     Ok(if settings.mass == 1.0 { model } else { with_mass(model, settings.mass.into()) })
 }
 

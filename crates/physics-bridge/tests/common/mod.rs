@@ -1,6 +1,8 @@
 //! What the tests of this crate share.
 #![allow(dead_code, missing_docs, reason = "each test uses its part")]
 
+pub mod shared_world;
+
 use physics_bridge::{Character, Model};
 use policy_core::format::{
     DISCRIMINATOR_LAYOUT, EdgeEntry, Manifest, OBSERVATION_LAYOUT, PACK_FORMAT, PACK_VERSION, PathEntry,

@@ -36,20 +36,25 @@ pub struct Diverged {
     pub found: f32,
 }
 
-/// The first body that moves implausibly.
-pub(super) fn check(skeleton: &Skeleton, state: &CharacterState, tick: u64) -> Option<Diverged> {
-    for (body, motion) in skeleton.bodies().iter().zip(&state.bodies) {
-        let sizes = [
-            (Cause::TooFast, MAX_SPEED_MPS, motion.linear_velocity.length()),
-            (Cause::SpinsTooFast, MAX_SPIN_RADPS, motion.angular_velocity.length()),
-            (Cause::BelowGround, MAX_DEPTH_M, state.ground_height - motion.position.z),
-            (Cause::TooFarAway, MAX_DISTANCE_M, motion.position.length()),
-        ];
-        let bad = sizes.into_iter().find(|&(_, limit, found)| found.is_nan() || found > limit);
-        if let Some((cause, limit, found)) = bad {
-            let cause = if found.is_finite() { cause } else { Cause::NotFinite };
-            return Some(Diverged { tick, cause, body: body.name.clone(), limit, found });
+impl Diverged {
+    /// Finds the first body of a sensed state that moves implausibly. `tick` is what an error says.
+    ///
+    /// # Errors
+    /// When a number is not finite or beyond a limit, such as [`MAX_SPEED_MPS`].
+    pub fn check(skeleton: &Skeleton, state: &CharacterState, tick: u64) -> Result<(), Self> {
+        for (body, motion) in skeleton.bodies().iter().zip(&state.bodies) {
+            let sizes = [
+                (Cause::TooFast, MAX_SPEED_MPS, motion.linear_velocity.length()),
+                (Cause::SpinsTooFast, MAX_SPIN_RADPS, motion.angular_velocity.length()),
+                (Cause::BelowGround, MAX_DEPTH_M, state.ground_height - motion.position.z),
+                (Cause::TooFarAway, MAX_DISTANCE_M, motion.position.length()),
+            ];
+            let bad = sizes.into_iter().find(|&(_, limit, found)| found.is_nan() || found > limit);
+            if let Some((cause, limit, found)) = bad {
+                let cause = if found.is_finite() { cause } else { Cause::NotFinite };
+                return Err(Self { tick, cause, body: body.name.clone(), limit, found });
+            }
         }
+        Ok(())
     }
-    None
 }

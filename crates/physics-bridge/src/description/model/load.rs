@@ -3,6 +3,8 @@
 use std::path::Path;
 use std::sync::Arc;
 
+use glam::{DMat3, DVec3};
+use mujoco_rs::wrappers::mj_data::MjData;
 use mujoco_rs::wrappers::mj_model::{MjModel, MjtObjBase};
 use policy_core::contract::{CONTROL_HZ, Pose, Settings};
 use policy_core::{CharacterPack, Skeleton};
@@ -12,7 +14,7 @@ use crate::description::ground::Ground;
 use crate::description::layout::Layout;
 use crate::description::model_error::ModelError;
 use crate::description::settings;
-use crate::description::shape::shapes;
+use crate::description::shape::{Shape, shapes};
 use crate::description::terrain::Terrain;
 use crate::description::{file, mjcf, skeleton};
 
@@ -145,9 +147,43 @@ impl Model {
         Pose::check(&stand.qpos, &stand.qvel, skeleton.joint_count())
             .map_err(|error| ModelError::Stand { error })?;
         let physics = Arc::clone(&base);
-        let shared = Shared { source, skeleton, base, layout, ground, shapes, shape_geoms, substeps, stand };
+        let stand_lift = stand_lift(&base, &layout, &stand, &shapes, &shape_geoms);
+        let shared = Shared {
+            source,
+            skeleton,
+            base,
+            layout,
+            ground,
+            shapes,
+            shape_geoms,
+            substeps,
+            stand,
+            stand_lift,
+        };
         Ok(Self { shared: Arc::new(shared), physics, settings: Settings::default() })
     }
+}
+
+/// Height of the root above the lowest point of a standing character, metres.
+fn stand_lift(
+    physics: &Arc<MjModel>,
+    layout: &Layout,
+    stand: &Pose,
+    shapes: &[Shape],
+    geoms: &[usize],
+) -> f64 {
+    let mut data = MjData::new(Arc::clone(physics));
+    layout.write_qpos(&stand.qpos, data.qpos_mut());
+    data.kinematics();
+    let root = data.xpos()[layout.body_ids[0]][2];
+    let mut lowest = f64::INFINITY;
+    for (shape, &geom) in shapes.iter().zip(geoms) {
+        // MuJoCo's matrices are row by row, glam's column by column.
+        let world_from_shape = DMat3::from_cols_array(&data.geom_xmat()[geom]).transpose();
+        let centre = DVec3::from(data.geom_xpos()[geom]);
+        shape.kind.low_points(centre, world_from_shape, |point, below| lowest = lowest.min(point.z - below));
+    }
+    if lowest.is_finite() { root - lowest } else { 0.0 }
 }
 
 /// Checks what stepping relies on. Returns the substeps in a control tick.

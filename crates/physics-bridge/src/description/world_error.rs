@@ -1,0 +1,137 @@
+//! Why a world can't be changed as asked.
+
+use policy_core::contract::{PoseError, PushError};
+
+use super::file::quoted;
+use super::model_error::ModelError;
+
+/// Why a [`World`](crate::World) refuses a change. The world is then as it was.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum WorldError {
+    /// A number is out of its range, or not a number.
+    #[error("expected {field} of {what} between {least} and {most}, found {found}")]
+    Range {
+        /// `a prop`, `a fixture`, `a joint`, `a character`, `a grab` or `a ray`.
+        what: &'static str,
+        /// Name of the field.
+        field: &'static str,
+        /// Least.
+        least: f32,
+        /// Most.
+        most: f32,
+        /// Given.
+        found: f32,
+    },
+    /// The handle is of something that was removed, or of another world.
+    #[error("expected the handle of {what} that is in the world, found one of something that is not")]
+    Stale {
+        /// `a prop`, `a fixture`, `a joint`, `a character` or `a grab`.
+        what: &'static str,
+    },
+    /// The corners of a mesh enclose nothing.
+    #[error("expected corners of a hull that are not in one plane, found a thickness of {thickness_m} m")]
+    Flat {
+        /// The least extent, metres.
+        thickness_m: f32,
+    },
+    /// A triangle names a corner that does not exist.
+    #[error("expected triangle {triangle} to name corners below {corners}, found {found}")]
+    Corner {
+        /// Index of the triangle.
+        triangle: usize,
+        /// Number of corners.
+        corners: usize,
+        /// Found.
+        found: u32,
+    },
+    /// A triangle has no area.
+    #[error("expected triangle {triangle} to have an area of at least {least_m2} m2, found {found_m2}")]
+    Sliver {
+        /// Index of the triangle.
+        triangle: usize,
+        /// Least area, square metres.
+        least_m2: f32,
+        /// Found.
+        found_m2: f32,
+    },
+    /// The height field has another number of heights than of points.
+    #[error("expected {expected} heights, found {found}")]
+    Heights {
+        /// Rows times columns.
+        expected: usize,
+        /// Given.
+        found: usize,
+    },
+    /// Too many of something.
+    #[error("expected at most {most} {what}, found more")]
+    TooMany {
+        /// What is counted.
+        what: &'static str,
+        /// Most.
+        most: usize,
+    },
+    /// A character runs at another rate than the world.
+    #[error(
+        "expected a character of {control_hz} ticks a second that bears steps of {timestep_secs} s, found one of \
+         {found_control_hz} and {found_timestep_secs} s: make the world of the model with the shortest steps"
+    )]
+    Rate {
+        /// The world's control ticks per second.
+        control_hz: f32,
+        /// The world's physics step, seconds.
+        timestep_secs: f64,
+        /// The character's control ticks per second.
+        found_control_hz: f32,
+        /// The character's physics step, seconds.
+        found_timestep_secs: f64,
+    },
+    /// The model differs in more than its settings.
+    #[error("expected a model made by `with_settings` of the present one, found another")]
+    OtherModel,
+    /// A character's geoms use too many contact bits.
+    #[error("expected contype and conaffinity to use at most {most} bits, found {found}")]
+    ContactBits {
+        /// Most.
+        most: u32,
+        /// Found.
+        found: u32,
+    },
+    /// A joint would make a prop hold itself.
+    #[error(
+        "expected a prop that is free or holds the other one by no joint, found a joint that closes a loop"
+    )]
+    Loop,
+    /// A prop on a joint can't be placed.
+    #[error("expected a prop without a joint, found one that hangs on a joint")]
+    Jointed,
+    /// A character can't be posed like that.
+    #[error(transparent)]
+    Pose(#[from] PoseError),
+    /// A push that is out of its limits.
+    #[error(transparent)]
+    Push(#[from] PushError),
+    /// A character's model can't be loaded.
+    #[error(transparent)]
+    Model(#[from] ModelError),
+    /// MuJoCo refuses what was put together.
+    #[error("expected a world that compiles, found: {}", quoted(message))]
+    Compile {
+        /// MuJoCo's words.
+        message: String,
+    },
+}
+
+/// Checks a number against its range.
+pub(crate) fn within(
+    what: &'static str,
+    field: &'static str,
+    found: f32,
+    [least, most]: [f32; 2],
+) -> Result<(), WorldError> {
+    if (least..=most).contains(&found) {
+        Ok(())
+    } else {
+        Err(WorldError::Range { what, field, least, most, found })
+    }
+}

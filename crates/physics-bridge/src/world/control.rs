@@ -1,0 +1,114 @@
+//! Sense, control, actuate: the characters of a world in the same terms as one alone.
+
+use policy_core::{CharacterState, Command, Controller};
+
+use super::World;
+use super::handle::CharacterHandle;
+use super::recover::{Divergence, Diverging, Remedy};
+use crate::cause::Cause;
+use crate::description::body_poses::BodyPoses;
+use crate::description::model::Model;
+use crate::description::world_error::WorldError;
+use crate::kinematics::{poses_into, sense_into};
+
+impl World {
+    /// The model of a character.
+    ///
+    /// # Errors
+    /// When the handle is stale.
+    pub fn model(&self, character: CharacterHandle) -> Result<&Model, WorldError> {
+        Ok(self.scene.characters.at(self.scene.characters.index_of(character)?))
+    }
+
+    /// Writes what a policy senses, as [`Character::sense_into`](crate::Character::sense_into). The ground is what is
+    /// below the root: the terrain, or a fixture on it. Allocates only when `out` was made for another skeleton.
+    ///
+    /// # Errors
+    /// When the handle is stale.
+    pub fn sense_into(&self, character: CharacterHandle, out: &mut CharacterState) -> Result<(), WorldError> {
+        let index = self.scene.characters.index_of(character)?;
+        let skeleton = self.scene.characters.at(index).skeleton();
+        if !out.fits(skeleton) {
+            *out = CharacterState::new(skeleton);
+        }
+        let ground = self.ground_heights[index];
+        sense_into(&self.data, &self.places.character(index).layout, |_, _| ground, out);
+        Ok(())
+    }
+
+    /// Writes where the bodies of a character are. Allocates only when `out` was made for another skeleton.
+    ///
+    /// # Errors
+    /// When the handle is stale.
+    pub fn poses_into(&self, character: CharacterHandle, out: &mut BodyPoses) -> Result<(), WorldError> {
+        let index = self.scene.characters.index_of(character)?;
+        poses_into(&self.data, &self.places.character(index).layout, out);
+        Ok(())
+    }
+
+    /// Sets the angles that the motors of a character pull its joints to, radians, in the order of the skeleton. They
+    /// hold until the next call. Targets that are not finite are ignored; the next [`World::step`] reports them.
+    ///
+    /// # Errors
+    /// When the handle is stale.
+    pub fn actuate(&mut self, character: CharacterHandle, targets: &[f32]) -> Result<(), WorldError> {
+        let index = self.scene.characters.index_of(character)?;
+        self.write_targets(index, targets);
+        Ok(())
+    }
+
+    fn write_targets(&mut self, index: usize, targets: &[f32]) {
+        if !targets.iter().all(|target| target.is_finite()) {
+            let what = Some(Diverging::Character(self.scene.characters.handle(index)));
+            let bad = Divergence { what, cause: Cause::BadControl, excess: None, remedy: Remedy::Ignored };
+            if !self.waiting.contains(&bad) && self.waiting.len() < self.waiting.capacity() {
+                self.waiting.push(bad);
+            }
+            return;
+        }
+        let ctrl = self.data.ctrl_mut();
+        for (&target, joint) in targets.iter().zip(&self.places.character(index).layout.joints) {
+            ctrl[joint.ctrl] = f64::from(target);
+        }
+    }
+
+    /// Runs one control tick: senses every character that `steering` names, lets its controller make joint targets,
+    /// and steps the physics. `steering` returns the character, controller and command of each of `owners`; one with
+    /// a stale handle is passed over. Returns how many things diverged. Does not allocate.
+    pub fn control_tick_with<C>(
+        &mut self,
+        owners: &mut [C],
+        dt_secs: f32,
+        mut steering: impl FnMut(&mut C) -> (CharacterHandle, &mut Controller, Command),
+    ) -> usize {
+        for owner in owners {
+            let (character, controller, command) = steering(owner);
+            let Ok(index) = self.scene.characters.index_of(character) else { continue };
+            let ground = self.ground_heights[index];
+            let sensed = &mut self.sensed[index];
+            sense_into(&self.data, &self.places.character(index).layout, |_, _| ground, sensed);
+            let targets = controller.tick(sensed, &command, dt_secs);
+            self.write_targets(index, targets);
+        }
+        self.step()
+    }
+
+    /// As [`World::control_tick_with`], for controllers beside their characters and commands.
+    pub fn control_tick(
+        &mut self,
+        players: &mut [(CharacterHandle, Controller, Command)],
+        dt_secs: f32,
+    ) -> usize {
+        self.control_tick_with(players, dt_secs, |(character, controller, command)| {
+            (*character, controller, *command)
+        })
+    }
+
+    /// What a character sensed at the start of the last control tick.
+    ///
+    /// # Errors
+    /// When the handle is stale.
+    pub fn sensed(&self, character: CharacterHandle) -> Result<&CharacterState, WorldError> {
+        Ok(&self.sensed[self.scene.characters.index_of(character)?])
+    }
+}

@@ -1,0 +1,139 @@
+//! A player: a gamepad or the keyboard becomes commands, through policy-core's mapper.
+//!
+//! Real gamepads need the feature `pads`, or Bevy's own `bevy_gilrs`. Without one the keys are: W A S D to walk, Shift faster, C lower,
+//! Q another style, E roll, Space get up, F jump, G kick.
+
+use bevy::prelude::*;
+use policy_core::{Bindings, Button, CommandMapper, GamepadState, Heading};
+
+use crate::axes;
+use crate::character::{CharacterCommand, CharacterGoal, PolicyController};
+
+/// Steers a character by gamepad or keyboard: writes its [`CharacterCommand`] in each frame.
+#[derive(Component, Reflect, Clone, Debug, Default)]
+#[reflect(Component, Default)]
+pub struct PlayerInput {
+    /// The gamepad; `None` for all of them and the keyboard.
+    pub gamepad: Option<Entity>,
+    /// The camera that "ahead" is meant for; `None`: ahead is -z.
+    pub camera: Option<Entity>,
+    /// Which control does what; used when the character gets its controller.
+    #[reflect(ignore)]
+    pub bindings: Bindings,
+}
+
+/// The mapper of a player.
+#[derive(Component)]
+struct PlayerMapper(CommandMapper);
+
+/// Turns gamepads and keys into commands of characters with a [`PlayerInput`].
+#[derive(Clone, Copy, Debug, Default)]
+pub struct PolicyInputPlugin;
+
+impl Plugin for PolicyInputPlugin {
+    fn build(&self, app: &mut App) {
+        app.register_type::<PlayerInput>().add_systems(
+            RunFixedMainLoop,
+            (make_mappers, command).chain().in_set(RunFixedMainLoopSystems::BeforeFixedMainLoop),
+        );
+    }
+}
+
+fn make_mappers(
+    mut commands: Commands,
+    players: Query<
+        (Entity, &PlayerInput, &PolicyController),
+        Or<(Without<PlayerMapper>, Changed<PlayerInput>)>,
+    >,
+) {
+    for (entity, input, controller) in &players {
+        let mapper = CommandMapper::new(controller.controller.pack(), &input.bindings);
+        commands.entity(entity).insert(PlayerMapper(mapper));
+    }
+}
+
+fn command(
+    mut players: Query<(&PlayerInput, &mut PlayerMapper, &PolicyController, &mut CharacterCommand)>,
+    gamepads: Query<(Entity, &Gamepad)>,
+    keys: Option<Res<ButtonInput<KeyCode>>>,
+    cameras: Query<&Transform, Without<PlayerInput>>,
+) {
+    for (input, mut mapper, controller, mut command) in &mut players {
+        let mut pad = GamepadState::default();
+        for (_, gamepad) in
+            gamepads.iter().filter(|(entity, _)| input.gamepad.is_none_or(|own| own == *entity))
+        {
+            add_gamepad(&mut pad, gamepad);
+        }
+        if let (None, Some(keys)) = (input.gamepad, &keys) {
+            add_keys(&mut pad, keys);
+        }
+        let camera = input.camera.and_then(|camera| cameras.get(camera).ok());
+        let ahead = camera.map_or(Heading::from_angle(core::f32::consts::FRAC_PI_2), |camera| {
+            axes::heading_from_bevy(camera.rotation)
+        });
+        let wanted = mapper.0.map(&pad, ahead, &controller.sensed);
+        let ground = controller.sensed.ground_height;
+        command.target = wanted.target.map(|target| axes::to_bevy(target.extend(ground)));
+        command.goal = CharacterGoal::Ids(wanted.goal);
+        if let Some(skill) = wanted.skill {
+            command.skill = Some(controller.controller.pack().skills()[skill.index()].name.clone().into());
+        }
+    }
+}
+
+/// Buttons of Bevy by place; policy-core names them alike, but for the triggers.
+const BUTTONS: [(GamepadButton, Button); 16] = [
+    (GamepadButton::South, Button::South),
+    (GamepadButton::East, Button::East),
+    (GamepadButton::West, Button::West),
+    (GamepadButton::North, Button::North),
+    (GamepadButton::LeftTrigger, Button::LeftShoulder),
+    (GamepadButton::RightTrigger, Button::RightShoulder),
+    (GamepadButton::LeftThumb, Button::LeftStick),
+    (GamepadButton::RightThumb, Button::RightStick),
+    (GamepadButton::Select, Button::Select),
+    (GamepadButton::Start, Button::Start),
+    (GamepadButton::Mode, Button::Guide),
+    (GamepadButton::DPadUp, Button::DpadUp),
+    (GamepadButton::DPadDown, Button::DpadDown),
+    (GamepadButton::DPadLeft, Button::DpadLeft),
+    (GamepadButton::DPadRight, Button::DpadRight),
+    (GamepadButton::Other(0), Button::Misc),
+];
+
+fn add_gamepad(pad: &mut GamepadState, gamepad: &Gamepad) {
+    let stick = |sum: [f32; 2], own: Vec2| (Vec2::from_array(sum) + own).to_array();
+    pad.left_stick = stick(pad.left_stick, gamepad.left_stick());
+    pad.right_stick = stick(pad.right_stick, gamepad.right_stick());
+    let trigger = |button: GamepadButton| gamepad.get(button).unwrap_or(0.0);
+    pad.left_trigger = pad.left_trigger.max(trigger(GamepadButton::LeftTrigger2));
+    pad.right_trigger = pad.right_trigger.max(trigger(GamepadButton::RightTrigger2));
+    for (own, button) in BUTTONS {
+        if gamepad.pressed(own) {
+            pad.buttons.set(button, true);
+        }
+    }
+}
+
+/// Keys that stand for buttons.
+const KEYS: [(KeyCode, Button); 5] = [
+    (KeyCode::Space, Button::South),
+    (KeyCode::KeyE, Button::East),
+    (KeyCode::KeyG, Button::West),
+    (KeyCode::KeyF, Button::North),
+    (KeyCode::KeyQ, Button::RightShoulder),
+];
+
+fn add_keys(pad: &mut GamepadState, keys: &ButtonInput<KeyCode>) {
+    let pushed = |key| f32::from(u8::from(keys.pressed(key)));
+    pad.left_stick[0] += pushed(KeyCode::KeyD) - pushed(KeyCode::KeyA);
+    pad.left_stick[1] += pushed(KeyCode::KeyW) - pushed(KeyCode::KeyS);
+    pad.right_trigger = pad.right_trigger.max(pushed(KeyCode::ShiftLeft));
+    pad.left_trigger = pad.left_trigger.max(pushed(KeyCode::KeyC));
+    for (key, button) in KEYS {
+        if keys.pressed(key) {
+            pad.buttons.set(button, true);
+        }
+    }
+}

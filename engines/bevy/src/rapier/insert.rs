@@ -1,0 +1,146 @@
+//! Bodies come into Rapier's world with a character and leave with it.
+
+use std::collections::HashSet;
+
+use bevy::prelude::*;
+use bevy_rapier3d::plugin::context::systemparams::{RapierContextMut, WriteRapierContext};
+use physics_rapier::{Articulation, Model};
+use policy_core::CharacterState;
+use policy_core::contract::Pose;
+
+use crate::axes;
+use crate::body::{self, BodyPose, PolicyBodies, PolicyBody};
+use crate::character::{PolicyCharacter, PolicyController};
+use crate::messages::{CharacterError, CharacterProblem};
+
+use super::place::{GroundPose, stand};
+use super::{Models, RapierArticulation, RapierCharacter, name_bodies, sets, world_of};
+
+/// Puts characters in whose pack is loaded.
+pub(super) fn put_in(
+    mut commands: Commands,
+    mut waiting: Query<
+        (Entity, &mut PolicyController, &RapierCharacter, &Transform),
+        (With<PolicyCharacter>, Without<RapierArticulation>),
+    >,
+    mut context: WriteRapierContext,
+    mut models: ResMut<Models>,
+    mut reported: Local<HashSet<Entity>>,
+    mut errors: MessageWriter<CharacterError>,
+) {
+    reported.retain(|&entity| waiting.contains(entity));
+    let Some(mut world) = world_of(&mut context) else { return };
+    for (character, mut controller, wanted, transform) in &mut waiting {
+        let pack = controller.controller.pack().clone();
+        let model = models.of(&pack).map_err(|error| CharacterProblem::Body { message: error.to_string() });
+        let place = GroundPose::of(transform).ok_or(CharacterProblem::Transform { found: *transform });
+        let (model, good) = match (model, place) {
+            (Ok(model), Ok(place)) => (model, place),
+            (Err(problem), _) | (_, Err(problem)) => {
+                if reported.insert(character) {
+                    errors.write(problem.of(character));
+                }
+                continue;
+            }
+        };
+        let entities = spawn_bodies(&mut commands, character, &model);
+        let links = spawn_links(&mut commands, character);
+        let (mut articulation, rest, standing) = build(&model, wanted, &mut world, &entities, links);
+        stand(&mut articulation, &standing, &mut world, good).expect("a checked pose of bodies just built");
+        name_bodies(&mut world);
+        (controller.rest, controller.embodied) = (rest, true);
+        let (set, joints) = (&world.rigidbody_set.bodies, &world.joints.multibody_joints);
+        articulation
+            .sense_into(set, joints, good.point.y, &mut controller.sensed)
+            .expect("bodies just built");
+        axes::turn_state(&mut controller.sensed);
+        for (&entity, at) in entities.iter().zip(body::poses(&controller)) {
+            let mut pose = BodyPose::default();
+            pose.jump(at);
+            commands.entity(entity).insert(pose);
+        }
+        let mut pose = BodyPose { written: Some(*transform), ..BodyPose::default() };
+        pose.jump(body::ground_pose(&controller));
+        let own =
+            RapierArticulation { articulation, pack, stand: standing, entities, links, good, fault: None };
+        commands.entity(character).insert((own, pose));
+    }
+}
+
+/// An entity for each body.
+fn spawn_bodies(commands: &mut Commands, character: Entity, model: &Model) -> Vec<Entity> {
+    let bodies = model.skeleton().bodies().iter().enumerate();
+    bodies.map(|(index, body)| spawn_body(commands, character, index, &body.name)).collect()
+}
+
+pub(super) fn spawn_body(commands: &mut Commands, character: Entity, index: usize, name: &str) -> Entity {
+    commands.spawn((PolicyBody { character, index }, Name::new(name.to_owned()))).id()
+}
+
+pub(super) fn spawn_links(commands: &mut Commands, character: Entity) -> Entity {
+    commands.spawn((Name::new("massless links"), ChildOf(character))).id()
+}
+
+/// Builds a body in Rapier. Returns what it senses with all joints at zero, and its standing pose, both z up.
+pub(super) fn build(
+    model: &Model,
+    wanted: &RapierCharacter,
+    world: &mut RapierContextMut,
+    entities: &[Entity],
+    links: Entity,
+) -> (Articulation, CharacterState, Pose) {
+    let mut articulation = Articulation::insert(model, &mut sets(world), wanted.drive, wanted.groups.into());
+    let skeleton = model.skeleton();
+    let (mut standing, zero) = (Pose::new(skeleton), Pose::new(skeleton));
+    let set = &world.rigidbody_set.bodies;
+    articulation.pose_into(set, &world.joints.multibody_joints, &mut standing).expect("bodies just inserted");
+    articulation.set_pose(&mut sets(world), &zero.qpos, &zero.qvel).expect("a sound pose");
+    let mut rest = CharacterState::new(skeleton);
+    let (set, joints) = (&mut world.rigidbody_set.bodies, &world.joints.multibody_joints);
+    articulation.sense_into(set, joints, 0.0, &mut rest).expect("bodies just inserted");
+
+    let root = joints.rigid_body_link(articulation.bodies()[0]).map(|link| link.multibody);
+    let multibody = root.and_then(|root| joints.get_multibody(root)).expect("the root is in a multibody");
+    for link in multibody.links() {
+        if let Some(body) = set.get_mut(link.rigid_body_handle()) {
+            body.user_data = links.to_bits().into();
+        }
+    }
+    for (&handle, entity) in articulation.bodies().iter().zip(entities) {
+        let Some(body) = set.get_mut(handle) else { continue };
+        body.user_data = entity.to_bits().into();
+        for &collider in body.colliders() {
+            if let Some(collider) = world.colliders.colliders.get_mut(collider) {
+                collider.user_data = entity.to_bits().into();
+                collider.set_active_events(wanted.events.into());
+            }
+        }
+    }
+    (articulation, rest, standing)
+}
+
+/// Takes the body out of Rapier's world when its character is despawned.
+pub(super) fn take_out(
+    removed: On<Remove<RapierArticulation>>,
+    bodies: Query<&RapierArticulation>,
+    mut context: WriteRapierContext,
+) {
+    let (Ok(own), Some(mut world)) = (bodies.get(removed.entity), world_of(&mut context)) else { return };
+    own.articulation.clone().remove(&mut sets(&mut world));
+    name_bodies(&mut world);
+}
+
+/// Takes everything away that came with `PolicyCharacter`, when the game removes that alone.
+pub(super) fn forget(removed: On<Remove<PolicyCharacter>>, mut commands: Commands) {
+    let character = removed.entity;
+    commands.queue(move |world: &mut World| {
+        // A character that is despawned takes its bodies along.
+        let Ok(mut character) = world.get_entity_mut(character) else { return };
+        let links = character.get::<RapierArticulation>().map(|own| own.links);
+        character.despawn_related::<PolicyBodies>();
+        character.remove::<(RapierArticulation, PolicyController, BodyPose)>();
+        if let Some(links) = links {
+            world.try_despawn(links).ok();
+        }
+    });
+}

@@ -1,0 +1,155 @@
+//! The fixed step: sense before the controllers, drive after them, look at the outcome after Rapier.
+
+use bevy::prelude::*;
+use bevy_rapier3d::plugin::context::systemparams::WriteRapierContext;
+use bevy_rapier3d::prelude::{ExternalForce, ExternalImpulse};
+use bevy_rapier3d::rapier::geometry::Ray;
+use bevy_rapier3d::rapier::pipeline::QueryFilter;
+use physics_rapier::{Cause, Diverged};
+
+use crate::axes;
+use crate::body::{self, BodyPose, PolicyBody};
+use crate::character::{CharacterReport, PolicyController};
+use crate::messages::{CharacterError, CharacterProblem};
+
+use super::place::GroundPose;
+use super::{Fault, RapierArticulation, world_of};
+
+/// How far below a character its ground may be, metres.
+const GROUND_RANGE: f32 = 200.0;
+
+/// Senses the characters whose control tick is due, and the ground below them.
+pub(super) fn sense(
+    mut characters: Query<(Entity, &CharacterReport, &mut PolicyController, &mut RapierArticulation)>,
+    mut context: WriteRapierContext,
+    mut errors: MessageWriter<CharacterError>,
+) {
+    let Some(world) = world_of(&mut context) else { return };
+    let (set, joints) = (&world.rigidbody_set.bodies, &world.joints.multibody_joints);
+    // A character may stand on what is fixed or kinematic, not on what it kicks.
+    let filter = QueryFilter::exclude_dynamic().exclude_sensors();
+    let dispatcher = world.simulation.narrow_phase.query_dispatcher();
+    let broad_phase = &world.simulation.broad_phase;
+    let query = broad_phase.as_query_pipeline(dispatcher, set, &world.colliders.colliders, filter);
+    for (entity, report, mut controller, mut own) in &mut characters {
+        if controller.due == 0 || own.fault.is_some() {
+            continue;
+        }
+        let controller = &mut *controller;
+        let mut ground = controller.sensed.ground_height;
+        if let Some(root) = set.get(own.articulation.bodies()[0]) {
+            let ray = Ray::new(root.translation(), Vec3::NEG_Y);
+            if let Some((_, distance)) = query.cast_ray(&ray, GROUND_RANGE, true) {
+                ground = root.translation().y - distance;
+                if !report.fallen {
+                    let at = Transform::from_isometry(body::ground_pose(controller));
+                    own.good = GroundPose::of(&at).unwrap_or(own.good);
+                }
+            }
+        }
+        match own.articulation.sense_into(set, joints, ground, &mut controller.sensed) {
+            Ok(()) => axes::turn_state(&mut controller.sensed),
+            Err(removed) => {
+                own.fault = Some(Fault::Stand);
+                errors.write(CharacterProblem::Removed { message: removed.to_string() }.of(entity));
+            }
+        }
+    }
+}
+
+/// Writes joint targets and the forces of the game to Rapier.
+pub(super) fn actuate(
+    mut characters: Query<(Entity, &PolicyController, &mut RapierArticulation)>,
+    mut forces: Query<
+        (Option<&ExternalForce>, Option<&mut ExternalImpulse>, &Name),
+        (With<PolicyBody>, Or<(With<ExternalForce>, With<ExternalImpulse>)>),
+    >,
+    mut context: WriteRapierContext,
+    time: Res<Time>,
+    mut errors: MessageWriter<CharacterError>,
+) {
+    let Some(mut world) = world_of(&mut context) else { return };
+    let (set, joints) = (&mut world.rigidbody_set.bodies, &mut world.joints.multibody_joints);
+    for (entity, controller, mut own) in &mut characters {
+        if own.fault.is_some() {
+            continue;
+        }
+        let own = &mut *own;
+        if controller.due > 0 {
+            own.articulation.actuate(controller.controller.joint_targets());
+        }
+        if let Err(removed) = own.articulation.before_step(set, joints) {
+            own.fault = Some(Fault::Stand);
+            errors.write(CharacterProblem::Removed { message: removed.to_string() }.of(entity));
+            continue;
+        }
+        for (&handle, &body) in own.articulation.bodies().iter().zip(&own.entities) {
+            let Ok((force, impulse, name)) = forces.get_mut(body) else { continue };
+            let (mut linear, mut angular) = force.map_or((Vec3::ZERO, Vec3::ZERO), |f| (f.force, f.torque));
+            // Rapier loses impulses on links of a multibody.
+            if let Some(mut impulse) = impulse.filter(|impulse| **impulse != ExternalImpulse::default()) {
+                linear += impulse.impulse / time.delta_secs();
+                angular += impulse.torque_impulse / time.delta_secs();
+                *impulse = ExternalImpulse::default();
+            }
+            if !linear.is_finite() || !angular.is_finite() {
+                let found = if linear.is_finite() { angular } else { linear };
+                errors.write(CharacterProblem::Force { body: name.to_string(), found }.of(entity));
+            } else if let Some(body) = set.get_mut(handle) {
+                body.add_force(linear, true);
+                body.add_torque(angular, true);
+            }
+        }
+    }
+}
+
+/// How far below the ground under its root a part of a character may hang, metres: over the edge of a platform, say.
+const HANGS_M: f32 = 3.0;
+
+/// True for a body that hangs over an edge.
+fn hangs(diverged: &Diverged) -> bool {
+    diverged.cause == Cause::BelowGround && diverged.found < HANGS_M
+}
+
+/// Looks at what Rapier did: catches divergence, and hands the poses to the entities.
+pub(super) fn mirror(
+    mut characters: Query<(Entity, &mut PolicyController, &mut RapierArticulation, &mut BodyPose)>,
+    mut bodies: Query<&mut BodyPose, (With<PolicyBody>, Without<RapierArticulation>)>,
+    mut context: WriteRapierContext,
+    mut errors: MessageWriter<CharacterError>,
+) {
+    let Some(world) = world_of(&mut context) else { return };
+    let (set, joints) = (&world.rigidbody_set.bodies, &world.joints.multibody_joints);
+    for (entity, mut controller, mut own, mut pose) in &mut characters {
+        if own.fault.is_some() {
+            continue;
+        }
+        let controller = &mut *controller;
+        let ground = controller.sensed.ground_height;
+        let sensed = own.articulation.sense_into(set, joints, ground, &mut controller.sensed);
+        axes::turn_state(&mut controller.sensed);
+        let problem = match sensed {
+            Err(removed) => Some(CharacterProblem::Removed { message: removed.to_string() }),
+            Ok(()) => {
+                let skeleton = own.articulation.model().skeleton();
+                let disabled = own.articulation.bodies().iter().any(|&body| !set[body].is_enabled());
+                match Diverged::check(skeleton, &controller.sensed, 0) {
+                    Err(diverged) if !hangs(&diverged) => Some(diverged.to_string()),
+                    _ => disabled.then(|| "Rapier disabled a body that was not finite".into()),
+                }
+                .map(|message| CharacterProblem::Diverged { message })
+            }
+        };
+        if let Some(problem) = problem {
+            own.fault = Some(Fault::Stand);
+            errors.write(problem.of(entity));
+            continue;
+        }
+        pose.advance(body::ground_pose(controller));
+        for (&entity, at) in own.entities.iter().zip(body::poses(controller)) {
+            if let Ok(mut pose) = bodies.get_mut(entity) {
+                pose.advance(at);
+            }
+        }
+    }
+}
