@@ -205,11 +205,7 @@ impl FrameComposer {
 
     fn start(&mut self, app: &mut App, kind: Kind, size: [u32; 2]) {
         self.stop(app);
-        let path = match kind {
-            Kind::Sequence => name("frames"),
-            Kind::Mp4 => name("mp4"),
-            Kind::Apng => name("apng"),
-        };
+        let path = name(kind.extension());
         app.recording = Some(path.display().to_string());
         self.recorder = Some((Recorder::start(kind, path, size, FILM_FPS), Instant::now(), 0));
     }
