@@ -45,7 +45,12 @@ impl App {
                 self.sim.overrides.goal = goal;
                 self.overridden_at = self.input();
             }
-            ViewerCommand::Layers(layers) => self.layers = layers,
+            ViewerCommand::Layers(layers) => {
+                if layers.active && !self.layers.active {
+                    self.overridden_at = self.input();
+                }
+                self.layers = layers;
+            }
             ViewerCommand::SavePreset(preset) => {
                 self.layout.presets.retain(|p| p.name != preset.name);
                 self.layout.presets.push(preset);
