@@ -27,6 +27,7 @@ use crate::panels;
 use crate::render::Scene;
 use crate::scene_setup::{Trail, set_scene};
 use crate::sim::{Divergence, Playback, Simulation};
+use crate::text::counted;
 pub use clock::Clock;
 pub use command::{Record, ViewerCommand};
 pub use keys::{KEYS, Keys, PAD};
@@ -251,7 +252,7 @@ impl App {
         let replay = saved.then(|| path.display().to_string());
         let mut what = format!("character {}: {}", first.character, first.what);
         if all.len() > 1 {
-            what += &format!(" (and {} more characters)", all.len() - 1);
+            what += &format!(" (and {})", counted(all.len() as u64 - 1, "more character"));
         }
         let characters = all.iter().map(|divergence| divergence.character).collect();
         self.failure = Some(Failure { what, replay, characters });
