@@ -199,6 +199,35 @@ fn on_ice_the_demo_goes_on_and_starts_again_after_a_failure() {
 }
 
 #[test]
+fn a_crouch_without_the_stick_is_sent_back_to_its_place() {
+    let crouched = GamepadState { left_trigger: 0.5, left_stick: [0.0; 2], ..FORWARD };
+    let mut sim = simulation();
+    let put = |sim: &mut Simulation, x: f64| {
+        let mut pose = sim.character(0).pose();
+        pose.qpos[0] += x;
+        pose.qvel.fill(0.0);
+        sim.character_mut(0).set_pose(&pose.qpos, &pose.qvel).unwrap();
+        (0..2).for_each(|_| drop(sim.tick(&crouched, Heading::FORWARD)));
+    };
+    (0..150).for_each(|_| drop(sim.tick(&crouched, Heading::FORWARD)));
+    put(&mut sim, 0.0);
+    let place = sim.player().position();
+    assert_eq!(sim.player().command.target, None, "it is where it should be");
+    for away in [4.0, -8.0] {
+        put(&mut sim, away);
+        let here = sim.player().position();
+        let target = sim.player().command.target.unwrap();
+        let back = (target - here).normalize().dot((place - here).normalize());
+        assert!(back > 0.9, "from {here} to {target}, its place is {place}");
+    }
+    // With the stick, or standing, there is no place to keep.
+    sim.tick(&FORWARD, Heading::FORWARD);
+    assert!(sim.player().command.target.unwrap().x > sim.player().position().x + 3.0);
+    sim.tick(&GamepadState { left_trigger: 0.0, ..crouched }, Heading::FORWARD);
+    assert_eq!(sim.player().command.target, None);
+}
+
+#[test]
 fn what_is_out_of_range_changes_nothing() {
     let mut sim = simulation();
     let mut heavy = sim.model().settings();
