@@ -59,7 +59,7 @@ fn tick(ui: &mut Ui, done: bool) {
 
 fn tour(ui: &Ui, free: Rect) {
     let area = egui::Area::new(egui::Id::unique("tour")).pivot(Align2::CENTER_TOP);
-    area.fixed_pos(free.center_top() + vec2(0.0, 16.0)).show(ui.ctx(), |ui| {
+    area.fixed_pos(free.center_top() + vec2(0.0, 56.0)).show(ui.ctx(), |ui| {
         frame().show(ui, |ui| ui.strong("Tour: press any key or button to steer yourself"));
     });
 }
