@@ -101,7 +101,7 @@ impl<'a> Headless<'a> {
                 "expected a script or recording of at most {MOST_SECS} s, found {seconds} s; --seconds plays a part"
             );
         }
-        if let Some(complaint) = app.notice.take() {
+        if let Some(complaint) = app.toasts.take_text() {
             bail!("{complaint}");
         }
         if demo.panels.is_some() {
