@@ -24,7 +24,7 @@ pub struct Keys {
 }
 
 /// What keys do, for the help overlay.
-pub const KEYS: [(&str, &str); 19] = [
+pub const KEYS: [(&str, &str); 20] = [
     ("W A S D, arrows", "walk where the camera looks; with Shift half as fast"),
     ("E", "hold: right trigger, the speed path; it returns slowly"),
     ("Q", "hold: left trigger, the stance path"),
@@ -34,7 +34,8 @@ pub const KEYS: [(&str, &str); 19] = [
     ("J, K", "jump, kick, where the pack has them"),
     ("V", "shove the character to the ground"),
     ("right mouse, I O U L", "turn the camera; wheel: closer or away"),
-    ("left mouse on a body", "pull it"),
+    ("left mouse on a body", "pull it; in the playground also a prop"),
+    ("T, Y", "in the playground: throw a ball at the mouse, put a prop there"),
     ("C", "camera: orbit, follow, fixed"),
     ("P, N, B", "pause, one tick, one tick back"),
     ("minus, plus", "slower, faster"),
@@ -47,7 +48,7 @@ pub const KEYS: [(&str, &str); 19] = [
 ];
 
 /// What pad controls do, for the help overlay.
-pub const PAD: [(&str, &str); 9] = [
+pub const PAD: [(&str, &str); 10] = [
     ("left stick", "direction and speed"),
     ("right stick", "camera"),
     ("right trigger", "speed path: walk, jog, run"),
@@ -57,6 +58,7 @@ pub const PAD: [(&str, &str); 9] = [
     ("Y or triangle, X or square", "jump, kick, where the pack has them"),
     ("right shoulder", "hold: style path, where the pack has one"),
     ("left shoulder", "shove the character to the ground"),
+    ("d-pad up, down", "in the playground: throw a ball, put a prop down"),
 ];
 
 impl Keys {

@@ -2,6 +2,7 @@
 
 mod analysis;
 mod blend_mode;
+mod course;
 mod failure;
 mod graph;
 mod help;
@@ -42,6 +43,7 @@ pub(crate) fn show(ui: &mut Ui, app: &App, commands: &mut Vec<ViewerCommand>) ->
     }
     let free = ui.available_rect_before_wrap();
     status(ui, app, free, commands);
+    course::show(ui, app, free);
     if app.help {
         help::show(ui, app, commands);
     }
