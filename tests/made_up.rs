@@ -69,6 +69,7 @@ pub fn pack(model: &Model, mjcf: &str) -> CharacterPack {
             nodes: ["rest".into(), "trot".into()],
             seconds: 0.5,
             seconds_back: Some(0.25),
+            transit: false,
         }],
         paths: vec![PathEntry { name: "speed".into(), nodes: vec!["rest".into(), "trot".into()] }],
         discriminators: vec![DiscriminatorEntry {

@@ -186,7 +186,7 @@ fn a_full_disk_and_a_folder_made_read_only_leave_the_file_as_it_was() {
                 under(&["setpriv", "--bounding-set=-dac_override", "--"], &inner, disk::FORBIDDEN)
             })
         });
-        println!("{}", done.expect("one of `unshare -rm`, `setpriv` and a user who is not root"));
+        println!("{}", done.expect("`unshare -rm`, `setpriv` or a user other than root"));
     }
 }
 

@@ -57,7 +57,12 @@ fn pack(falls: bool) -> Arc<CharacterPack> {
         speed_mps: Some(if name == "idle" { 0.0 } else { 1.0 }),
         origin: "made up".into(),
     };
-    let edge = |a: &str, b: &str| EdgeEntry { nodes: [a.into(), b.into()], seconds: 0.1, seconds_back: None };
+    let edge = |a: &str, b: &str| EdgeEntry {
+        nodes: [a.into(), b.into()],
+        seconds: 0.1,
+        seconds_back: None,
+        transit: false,
+    };
     let path =
         |name: &str, nodes: [&str; 3]| PathEntry { name: name.into(), nodes: nodes.map(Into::into).into() };
     let end = EndEntry {

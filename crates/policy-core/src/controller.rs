@@ -303,7 +303,7 @@ impl Controller {
                 goal.position(graph)
             }
         };
-        report.goal = goal.unwrap_or(report.position);
+        report.goal = graph.settled(goal.unwrap_or(report.position), report.position);
         let mut next = report.position;
         graph.travel(&mut next, report.goal, dt);
         let limits = [report.position, next].map(|position| fall_height(graph, position));

@@ -188,6 +188,14 @@ pub struct EdgeEntry {
     /// Seconds from the second to the first; none: the same.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub seconds_back: Option<f32>,
+    /// True for an edge that is crossed and not rested on.
+    #[serde(default, skip_serializing_if = "is_false")]
+    pub transit: bool,
+}
+
+#[expect(clippy::trivially_copy_pass_by_ref, reason = "as serde calls it")]
+fn is_false(value: &bool) -> bool {
+    !value
 }
 
 /// A path.

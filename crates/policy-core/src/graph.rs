@@ -34,11 +34,20 @@ pub struct Edge {
     pub seconds: f32,
     /// Time from the second node to the first, seconds, above 0.
     pub seconds_back: f32,
+    /// True for an edge that a character crosses and does not rest on, because nothing half-way is a gait: between a crouch
+    /// and a crawl. See [`PolicyGraph::settled`].
+    pub transit: bool,
     /// Euclidean distance between the parameters: the cost of the edge in graph search.
     pub distance: f32,
 }
 
 impl Edge {
+    /// An edge to rest on. Its distance is found when the graph is made.
+    #[must_use]
+    pub fn new(nodes: [NodeId; 2], [seconds, seconds_back]: [f32; 2]) -> Self {
+        Self { nodes, seconds, seconds_back, transit: false, distance: 0.0 }
+    }
+
     /// Time to the other end from `node`, seconds.
     #[must_use]
     pub fn seconds_from(&self, node: NodeId) -> f32 {
@@ -110,8 +119,8 @@ pub enum GraphError {
 }
 
 impl PolicyGraph {
-    /// A graph of nodes, edges as (nodes, seconds there, seconds back), and paths as (name, nodes). `policies` are the
-    /// nodes' parameters and give the distances.
+    /// A graph of nodes, edges, and paths as (name, nodes). `policies` are the nodes' parameters and give the edges their
+    /// distances.
     ///
     /// # Errors
     /// When a name, number, edge or path is not as [`GraphError`] says.
@@ -120,7 +129,7 @@ impl PolicyGraph {
     /// When there are not as many policies as nodes or their shapes differ; a pack is checked before.
     pub fn from_parts(
         nodes: Vec<Node>,
-        edges: &[([NodeId; 2], [f32; 2])],
+        edges: &[Edge],
         paths: Vec<(String, Vec<NodeId>)>,
         policies: &[Mlp],
     ) -> Result<Self, GraphError> {
@@ -134,11 +143,11 @@ impl PolicyGraph {
             check_node(node)?;
         }
         let mut checked = Vec::with_capacity(edges.len());
-        for (index, &(ends, [seconds, seconds_back])) in edges.iter().enumerate() {
-            let mut edge = Edge { nodes: ends, seconds, seconds_back, distance: 0.0 };
-            let [a, b] = ends.map(NodeId::index);
+        for (index, &edge) in edges.iter().enumerate() {
+            let mut edge = Edge { distance: 0.0, ..edge };
+            let [a, b] = edge.nodes.map(NodeId::index);
             let joins = a != b && a < nodes.len() && b < nodes.len();
-            let timed = [seconds, seconds_back].iter().all(|s| *s > 0.0 && s.is_finite());
+            let timed = [edge.seconds, edge.seconds_back].iter().all(|s| *s > 0.0 && s.is_finite());
             if !joins || !timed {
                 return Err(GraphError::Edge { edge: index, found: edge });
             }

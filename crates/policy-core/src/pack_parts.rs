@@ -11,7 +11,7 @@ use crate::format::{
     DISCRIMINATOR_LAYOUT, EdgeEntry, EndEntry, MAX_NAME_BYTES, Manifest, OBSERVATION_LAYOUT, PACK_FORMAT,
     PACK_VERSION, SkeletonEntry, SkillEntry,
 };
-use crate::graph::{GraphError, MAX_NODES, PolicyGraph, check_names};
+use crate::graph::{Edge, GraphError, MAX_NODES, PolicyGraph, check_names};
 use crate::ids::{BodyId, DiscriminatorId, NodeId, PolicyId};
 use crate::mlp::Mlp;
 use crate::pack::PackTensors;
@@ -170,9 +170,10 @@ pub(crate) fn find_node(field: String, name: &str, names: &[&str]) -> Result<Nod
     Ok(NodeId::new(find("policy", field, name, &mut names.iter().copied())?))
 }
 
-pub(crate) fn edge(entry: &EdgeEntry, names: &[&str]) -> Result<([NodeId; 2], [f32; 2]), PackError> {
+pub(crate) fn edge(entry: &EdgeEntry, names: &[&str]) -> Result<Edge, PackError> {
     let end = |i: usize| find_node("edges".into(), &entry.nodes[i], names);
-    Ok(([end(0)?, end(1)?], [entry.seconds, entry.seconds_back.unwrap_or(entry.seconds)]))
+    let seconds = [entry.seconds, entry.seconds_back.unwrap_or(entry.seconds)];
+    Ok(Edge { transit: entry.transit, ..Edge::new([end(0)?, end(1)?], seconds) })
 }
 
 pub(crate) fn skill(entry: &SkillEntry, names: &[&str], m: &Manifest) -> Result<Skill, PackError> {

@@ -117,6 +117,26 @@ impl PolicyGraph {
         }
     }
 
+    /// Where a character that is asked to go to `goal` comes to rest: at `goal`, or at the nearer node of an edge that is only
+    /// crossed ([`Edge::transit`]). A character in the half of one node rests there until `goal` is beyond 0.6 of the way to the
+    /// other, so that a trembling trigger does not send it to and fro.
+    #[must_use]
+    pub fn settled(&self, goal: GraphPosition, present: GraphPosition) -> GraphPosition {
+        let edge = match goal.as_node() {
+            None => self.edge_between(goal.from, goal.to),
+            Some(_) => None,
+        };
+        if !edge.is_some_and(|edge| edge.transit) {
+            return goal;
+        }
+        let threshold = match present.along(goal.from, goal.to) {
+            Some(t) if t < 0.5 => 0.6,
+            Some(_) => 0.4,
+            None => 0.5,
+        };
+        GraphPosition::node(if goal.t < threshold { goal.from } else { goal.to })
+    }
+
     /// The present position on the edge to travel next, and how far along it to go; `None` at the goal or where
     /// there is no way.
     fn next_leg(&self, position: GraphPosition, goal: GraphPosition) -> Option<(GraphPosition, f32)> {

@@ -16,10 +16,10 @@ const FULL_SPEED: f32 = 0.3;
 /// Errors beyond this are turns, not drift, radians.
 const DRIFT_RADIANS: f32 = 0.6;
 
-/// Largest angle off the heading to which the lead raises what a policy is asked for, radians. Larger turns are slower with it.
+/// The lead raises no turn above this angle, radians. Larger turns are slower with a lead.
 const LARGEST_RADIANS: f32 = 0.5 * PI;
 
-/// Feedback from the course, the direction in which the root moves, to the direction that the policy is asked for.
+/// Corrects the target that a policy sees by the course: the direction in which the root moves.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Steering {
     /// How much further the policy is asked to turn than the target lies, for each radian between course and target.

@@ -43,6 +43,24 @@ fn it_travels_to_the_goal_at_a_limited_rate() {
 }
 
 #[test]
+fn it_does_not_rest_on_a_transit_edge() {
+    let mut manifest = common::manifest();
+    manifest.edges[4].transit = true;
+    let pack = CharacterPack::from_parts(manifest, common::tensors(0.0)).unwrap();
+    let [crouch, crawl] = ["crouch", "crawl"].map(|name| pack.graph().node_named(name).unwrap());
+    let mut controller = Controller::new(Arc::new(pack));
+    let mut after = |goal: Goal, ticks: u32| {
+        for _ in 0..ticks {
+            controller.tick(&standing(), &Command { goal, ..Command::default() }, DT);
+        }
+        controller.report().position.as_node()
+    };
+    assert_eq!(after(along(1, 2.4), 90), Some(crouch));
+    assert_eq!(after(along(1, 2.8), 10), None, "it crosses the edge");
+    assert_eq!(after(Goal::Stay, 30), Some(crawl), "and does not stay there");
+}
+
+#[test]
 fn the_joint_targets_are_those_of_the_blended_policy() {
     let mut controller = controller(0.0, "walk");
     let command = Command { target: Some(Vec2::new(3.0, 0.0)), ..Command::default() };

@@ -39,8 +39,14 @@ fn search_finds_the_cheapest_way() {
         nodes: ["idle".into(), "crouch".into()],
         seconds: 1.0,
         seconds_back: None,
+        transit: false,
     });
-    manifest.edges.push(EdgeEntry { nodes: ["run".into(), "idle".into()], seconds: 1.0, seconds_back: None });
+    manifest.edges.push(EdgeEntry {
+        nodes: ["run".into(), "idle".into()],
+        seconds: 1.0,
+        seconds_back: None,
+        transit: false,
+    });
     let pack = CharacterPack::from_parts(manifest, common::tensors(0.0)).unwrap();
     let graph = pack.graph();
     for a in 0..graph.nodes().len() {
@@ -110,6 +116,25 @@ fn an_edge_may_take_longer_one_way_than_the_other() {
         })
     };
     assert!((49..=51).contains(&seconds(0, 1).unwrap()) && (24..=26).contains(&seconds(1, 0).unwrap()));
+}
+
+#[test]
+fn a_character_rests_at_the_nearer_end_of_a_transit_edge() {
+    let mut manifest = common::manifest();
+    manifest.edges[4].transit = true;
+    let pack = CharacterPack::from_parts(manifest, common::tensors(0.0)).unwrap();
+    let graph = pack.graph();
+    let [crouch, crawl] = ["crouch", "crawl"].map(|name| node(&pack, name));
+    let between = |t: f32| GraphPosition { from: crouch, to: crawl, t };
+    let rests = |asked: f32, present: GraphPosition| graph.settled(between(asked), present).as_node();
+    let there = GraphPosition::node;
+    assert_eq!([0.3, 0.59, 0.61].map(|t| rests(t, there(crouch))), [crouch, crouch, crawl].map(Some));
+    assert_eq!([0.39, 0.41, 1.0].map(|t| rests(t, there(crawl))), [crouch, crawl, crawl].map(Some));
+    assert_eq!([0.49, 0.51].map(|t| rests(t, there(n(0)))), [crouch, crawl].map(Some));
+    let backwards = GraphPosition { from: crawl, to: crouch, t: 0.45 };
+    assert_eq!(graph.settled(backwards, there(crouch)).as_node(), Some(crouch), "told from the other end");
+    let walks = GraphPosition { from: n(0), to: n(1), t: 0.4 };
+    assert_eq!(graph.settled(walks, there(crouch)), walks, "an edge to rest on");
 }
 
 #[test]

@@ -25,7 +25,7 @@ fn body(heading: f32, course: f32, speed: f32) -> CharacterState {
     state
 }
 
-/// Angle off the heading that the policy is asked for after `ticks` with the target this far off world x.
+/// Angle of the policy's target in the heading frame after `ticks`. The target lies at this angle from world x.
 fn asked(controller: &mut Controller, state: &CharacterState, target: f32, ticks: usize) -> f32 {
     let target = Some(state.root().position.truncate() + 5.0 * Vec2::from_angle(target));
     for _ in 0..ticks {
@@ -35,7 +35,7 @@ fn asked(controller: &mut Controller, state: &CharacterState, target: f32, ticks
     y.atan2(x)
 }
 
-/// A body that turns towards what it is asked for, as a policy does, and slides aside by `drift`. Its last course.
+/// The last course of a body that turns to the policy's target and slides aside by `drift`.
 fn walked(steering: Option<Steering>, drift: f32, target: f32) -> f32 {
     let mut controller = controller(steering);
     let (mut heading, mut course) = (0.0, drift);
@@ -84,7 +84,7 @@ fn the_trim_is_limited_and_forgotten_without_a_target() {
 }
 
 #[test]
-fn who_stands_has_no_course() {
+fn a_standing_body_has_no_course() {
     let mut controller = controller(Some(Steering::default()));
     let swaying = body(0.0, 1.5, 0.05);
     assert!(asked(&mut controller, &swaying, 0.0, 60).abs() < 1e-3);

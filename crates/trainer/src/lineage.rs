@@ -51,10 +51,12 @@ pub struct TrainStep {
     /// Name of the run; the recipe's by default.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub run: Option<String>,
-    /// Run whose networks it starts from, with no samples taken. Without it, and without `continues`, it starts from the runs
-    /// of the recipe's parents.
+    /// Run whose networks it starts from. Without it, and without `continues`, it starts from the runs of the recipe's parents.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub from: Option<String>,
+    /// Samples that count as taken when it starts from another run, so that it begins in a later phase; 0 by default.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub from_samples: Option<u64>,
     /// Run that trained the recipe's parent together with others, to start from instead of the parent's own run.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub parents: Option<String>,
@@ -181,6 +183,9 @@ impl Lineage {
             match step {
                 Step::Train(TrainStep { from: Some(from), continues: Some(_), .. }) => {
                     return Err(wrong(index, "`from` or `continues`", format!("both, from {from}")));
+                }
+                Step::Train(TrainStep { from: None, from_samples: Some(samples), .. }) => {
+                    return Err(wrong(index, "`from` beside `from_samples`", samples.to_string()));
                 }
                 Step::Train(TrainStep { samples: Some(0), .. }) => {
                     return Err(wrong(index, "at least one sample", "0".into()));

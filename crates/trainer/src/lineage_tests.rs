@@ -17,6 +17,7 @@ fn steps_read_what_earlier_steps_make() {
     assert!(said(&good.replacen("run = \"more\"", "run = \"walk\"", 1)).contains("no other step"));
     assert!(said(&good.replace("[\"walk\", \"more\"]", "[\"walk\"]")).contains("at least two"));
     assert!(said(&good.replace("continues", "from = \"walk\", continues")).contains("both"));
+    assert!(said(&good.replace("continues", "from_samples = 5, continues")).contains("beside"));
     assert!(said("{ train = { recipe = \"../x\" } }").contains("lower-case"));
     assert!(said("{ train = { recipe = \"x\", samples = 0 } }").contains("at least one"));
     assert!(said("{ dance = { } }").contains("dance"));

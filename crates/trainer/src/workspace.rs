@@ -7,19 +7,29 @@ use anyhow::{Context, Result, bail};
 use clips::{ClipError, ClipFolder};
 use physics_bridge::Model;
 
-use crate::checkpoint::{ACTOR, Checkpoint, CheckpointError, EMA, PARENT_DISCRIMINATOR};
+use crate::checkpoint::{Checkpoint, CheckpointError};
 use crate::env::{Demonstrations, Normalisers};
 use crate::recipe::Recipe;
 use crate::run::{CHECKPOINT, Existing, Loaded, METRICS, METRICS_FILE, Run, RunFolder, newest_checkpoint};
 use crate::training::Training;
+
+mod restore;
+
+use restore::{restore, skill_alone};
 
 /// What a new run begins with.
 #[derive(Debug)]
 pub enum Start {
     /// The networks of the recipe's parents, or random ones.
     Parents,
-    /// The networks of this checkpoint, with no samples taken; its path is named in errors.
-    From((Checkpoint, PathBuf)),
+    /// The networks of this checkpoint; its path is named in errors. Of a run that trained several
+    /// skills together, the networks of the recipe's skill.
+    From {
+        /// The checkpoint and its path.
+        checkpoint: (Checkpoint, PathBuf),
+        /// Samples that count as taken: a policy that can walk may begin in a later phase.
+        samples: u64,
+    },
     /// The whole state of this checkpoint.
     Continue((Checkpoint, PathBuf)),
 }
@@ -136,6 +146,27 @@ impl Workspace {
         self.prepare_named(&name, recipe, seed, existing, start)
     }
 
+    /// As [`Workspace::prepare`]; a new run starts from the networks of the run `from`, or of its kept checkpoint. `samples` count
+    /// as taken.
+    ///
+    /// # Errors
+    /// As [`Workspace::prepare_named`], and when `from` has no checkpoint.
+    pub fn prepare_from(
+        &self,
+        from: &str,
+        samples: u64,
+        recipe: Recipe,
+        seed: u64,
+        existing: Existing,
+    ) -> Result<Run> {
+        let name = recipe.skill.clone();
+        let checkpoint = self.newest(from)?.with_context(|| {
+            let [runs, kept] = [self.runs.display(), self.kept.display()];
+            format!("expected a run or a kept checkpoint named {from}, found none in {runs} and {kept}")
+        })?;
+        self.prepare_named(&name, recipe, seed, existing, Start::From { checkpoint, samples })
+    }
+
     /// Makes a run of this name ready and locks its folder. With [`Existing::Resume`] and a run there it continues that; else
     /// it begins as `start` says.
     ///
@@ -160,11 +191,15 @@ impl Workspace {
         if let Some(Loaded { torn: Some(error), path, .. }) = &own {
             notes.push(format!("{error}; continuing from {}", path.display()));
         }
+        let begins = matches!((&own, &start), (None, Start::From { .. }));
         let earlier = match (own, start) {
             (Some(Loaded { checkpoint, path, .. }), _) => Some((checkpoint, path)),
             (None, Start::Continue(earlier)) => Some(earlier),
-            (None, Start::From((mut checkpoint, path))) => {
-                (checkpoint.progress.samples, checkpoint.progress.secs) = (0, 0.0);
+            (None, Start::From { checkpoint: (mut checkpoint, path), samples }) => {
+                if recipe.paths.is_empty() {
+                    checkpoint = skill_alone(checkpoint, &recipe.skill);
+                }
+                (checkpoint.progress.samples, checkpoint.progress.secs) = (samples, 0.0);
                 Some((checkpoint, path))
             }
             (None, Start::Parents) => None,
@@ -182,7 +217,7 @@ impl Workspace {
         }
         folder.write("recipe.toml", &text)?;
         let secs = match earlier {
-            Some((checkpoint, path)) => restore(&mut training, &checkpoint, &path)?,
+            Some((checkpoint, path)) => restore(&mut training, &checkpoint, &path, begins)?,
             None => 0.0,
         };
         Ok(Run::new(training, folder, seed, secs, notes))
@@ -207,33 +242,4 @@ pub fn newest_or_kept(
     let kept = kept.join(format!("{skill}.safetensors"));
     let loaded = kept.exists().then(|| Checkpoint::load(&kept)).transpose()?;
     Ok(loaded.map(|checkpoint| (checkpoint, kept)))
-}
-
-/// Puts a checkpoint's networks into a training; returns the seconds spent before.
-fn restore(training: &mut Training, checkpoint: &Checkpoint, path: &Path) -> Result<f64> {
-    for (role, network, adam) in training.networks_mut() {
-        // Discriminators of a parent or half-way can be learned anew; a moving average begins where its policy is.
-        let actor = role.strip_suffix(EMA).map(|before| format!("{before}{ACTOR}"));
-        let known = checkpoint.networks.contains_key(&role);
-        if (role == PARENT_DISCRIMINATOR || role.contains('-')) && !known {
-            continue;
-        }
-        let trained = checkpoint.network(actor.filter(|_| !known).as_deref().unwrap_or(&role), path)?;
-        if trained.network.sizes() != network.sizes() {
-            bail!(
-                "{}: expected a {role} of sizes {:?}, found {:?}",
-                path.display(),
-                network.sizes(),
-                trained.network.sizes()
-            );
-        }
-        network.clone_from(&trained.network);
-        if let Some(adam) = adam {
-            adam.clone_from(&trained.adam);
-        }
-    }
-    training.samples = checkpoint.progress.samples;
-    training.learner.actors.iter_mut().for_each(|a| a.learning_rate = checkpoint.progress.learning_rate);
-    training.learner.rng = checkpoint.progress.rng;
-    Ok(checkpoint.progress.secs)
 }

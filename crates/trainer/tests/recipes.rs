@@ -113,6 +113,16 @@ fn slim_checkpoints_are_enough_to_continue(workspace: &Workspace, folder: &Path)
     }
     let missing = alone.prepare(small(alone.recipe("jog").unwrap()), 3, Existing::Resume);
     assert!(missing.is_ok(), "its parent was trained together with others");
+    drop(missing);
+
+    let jog = || small(alone.recipe("jog").unwrap());
+    let run = alone.prepare_from("locomotion", 7, jog(), 3, Existing::Overwrite).unwrap();
+    let joint = Checkpoint::load(&alone.kept.join("locomotion.safetensors")).unwrap();
+    assert_eq!(run.training.learner.actors[1].network, joint.networks["jog.actor"].network);
+    assert_eq!(run.training.samples, 7, "a run of its own");
+    drop(run);
+    let unknown = alone.prepare_from("gallop", 0, jog(), 3, Existing::Overwrite).unwrap_err().to_string();
+    assert!(unknown.contains("named gallop") && unknown.contains("kept_alone"), "{unknown}");
 }
 
 fn the_pack_acts_as_the_trainer(pack: &CharacterPack, skills: &[TrainedSkill]) {

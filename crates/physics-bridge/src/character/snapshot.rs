@@ -43,6 +43,13 @@ impl StateHash {
         pose.qpos.iter().chain(&pose.qvel).for_each(|number| self.absorb_bits(number.to_bits()));
     }
 
+    /// The hash of a physics state after `tick` control ticks.
+    pub(crate) fn of_state(state: &[f64], tick: u64) -> u64 {
+        let mut hash = Self::default();
+        state.iter().map(|v| v.to_bits()).chain([tick]).for_each(|bits| hash.absorb_bits(bits));
+        hash.value()
+    }
+
     /// The hash of all that was absorbed.
     #[must_use]
     pub fn value(self) -> u64 {
@@ -85,9 +92,7 @@ impl Snapshot {
     /// [`StateHash`] of the state and the tick.
     #[must_use]
     pub fn hash(&self) -> u64 {
-        let mut hash = StateHash::default();
-        self.state.iter().map(|v| v.to_bits()).chain([self.tick]).for_each(|bits| hash.absorb_bits(bits));
-        hash.value()
+        StateHash::of_state(&self.state, self.tick)
     }
 
     /// Copies `other`. Allocates only when it is of another kind of character.

@@ -61,9 +61,7 @@ impl WorldSnapshot {
     /// The [`StateHash`] of the state and the tick: the same for the same state, bit for bit.
     #[must_use]
     pub fn hash(&self) -> u64 {
-        let mut hash = StateHash::default();
-        self.state.iter().map(|v| v.to_bits()).chain([self.tick]).for_each(|bits| hash.absorb_bits(bits));
-        hash.value()
+        StateHash::of_state(&self.state, self.tick)
     }
 
     fn fits(&self, world: &World) -> bool {

@@ -60,7 +60,12 @@ pub fn made_up_pack(skeleton: &Skeleton, mjcf: Option<&str>, actuation: Actuatio
     let joints = skeleton.joint_count();
     let sizes = [skeleton.policy_input_len(), 24, joints];
     let scaling = ActionScaling::from_skeleton(skeleton);
-    let edge = |a: &str, b: &str| EdgeEntry { nodes: [a.into(), b.into()], seconds: 0.5, seconds_back: None };
+    let edge = |a: &str, b: &str| EdgeEntry {
+        nodes: [a.into(), b.into()],
+        seconds: 0.5,
+        seconds_back: None,
+        transit: false,
+    };
     let manifest = Manifest {
         format: PACK_FORMAT.into(),
         version: PACK_VERSION,

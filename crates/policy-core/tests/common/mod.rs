@@ -68,7 +68,12 @@ pub fn manifest() -> Manifest {
         speed_mps: None,
         origin: "made up".into(),
     };
-    let edge = |a: &str, b: &str| EdgeEntry { nodes: [a.into(), b.into()], seconds: 0.5, seconds_back: None };
+    let edge = |a: &str, b: &str| EdgeEntry {
+        nodes: [a.into(), b.into()],
+        seconds: 0.5,
+        seconds_back: None,
+        transit: false,
+    };
     let path = |name: &str, nodes: &[&str]| PathEntry {
         name: name.into(),
         nodes: nodes.iter().map(|n| (*n).into()).collect(),

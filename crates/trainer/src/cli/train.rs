@@ -34,6 +34,13 @@ pub(crate) struct Arguments {
     /// Delete existing runs and start anew.
     #[arg(long)]
     overwrite: bool,
+    /// Start from the networks of this run, or of its kept checkpoint, instead of the parent's. Of a run that trained several
+    /// skills together, those of this skill.
+    #[arg(long, value_name = "RUN", requires = "skill")]
+    from: Option<String>,
+    /// Samples that count as taken by a run that starts from another, so that it begins in a later phase of its recipe.
+    #[arg(long, value_name = "SAMPLES", requires = "from", default_value_t = 0)]
+    from_samples: u64,
     /// Seed of the random numbers; a lineage has its own.
     #[arg(long, default_value_t = 1, conflicts_with = "plan")]
     seed: u64,
@@ -82,7 +89,12 @@ pub(crate) fn run(workspace: &Workspace, arguments: &Arguments) -> Result<ExitCo
         }
     }
     for recipe in recipes {
-        let mut run = workspace.prepare(recipe, arguments.seed, existing)?;
+        let mut run = match &arguments.from {
+            Some(from) => {
+                workspace.prepare_from(from, arguments.from_samples, recipe, arguments.seed, existing)?
+            }
+            None => workspace.prepare(recipe, arguments.seed, existing)?,
+        };
         if !step(&mut run)? {
             break;
         }

@@ -74,7 +74,9 @@ impl Lineage {
             Ok((loaded.checkpoint, loaded.path))
         };
         let start = match (&step.from, &step.continues) {
-            (Some(from), _) => Start::From(read(from)?),
+            (Some(from), _) => {
+                Start::From { checkpoint: read(from)?, samples: step.from_samples.unwrap_or_default() }
+            }
             (_, Some(continues)) => Start::Continue(read(continues)?),
             _ => Start::Parents,
         };

@@ -121,7 +121,12 @@ pub fn quadruped() -> CharacterPack {
         action_centre: scaling.centre().to_vec(),
         action_gain: scaling.gain().to_vec(),
         policies: vec![policy("idle", 0.0), policy("trot", 1.0)],
-        edges: vec![EdgeEntry { nodes: ["idle".into(), "trot".into()], seconds: 0.5, seconds_back: None }],
+        edges: vec![EdgeEntry {
+            nodes: ["idle".into(), "trot".into()],
+            seconds: 0.5,
+            seconds_back: None,
+            transit: false,
+        }],
         paths: vec![PathEntry { name: "speed".into(), nodes: vec!["idle".into(), "trot".into()] }],
         discriminators: Vec::new(),
         skills: Vec::new(),

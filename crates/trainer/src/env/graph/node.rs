@@ -1,6 +1,6 @@
 //! Nodes of a graph as training sees them, and policy-core's graph of them.
 
-use policy_core::training::{GraphError, Layer, Node};
+use policy_core::training::{Edge, GraphError, Layer, Node};
 use policy_core::{Mlp, NodeId, PolicyGraph};
 
 use crate::env::command::DT_SECS;
@@ -67,7 +67,7 @@ pub(super) fn policy_graph(
     let policy = Mlp::from_layers(vec![layer]).expect("one layer is a network");
     let edges: Vec<_> = pairs
         .iter()
-        .map(|pair| (pair.map(NodeId::new), edge_seconds(pair.map(|node| &nodes[node]), factors)))
+        .map(|pair| Edge::new(pair.map(NodeId::new), edge_seconds(pair.map(|node| &nodes[node]), factors)))
         .collect();
     let known = |node: &GraphNode| Node {
         name: node.name.clone(),

@@ -1,0 +1,65 @@
+//! What a run takes over from a checkpoint.
+
+use std::collections::HashMap;
+use std::path::Path;
+
+use anyhow::{Result, bail};
+
+use crate::checkpoint::{ACTOR, CRITIC, Checkpoint, DISCRIMINATOR, EMA, PARENT_DISCRIMINATOR};
+use crate::nn::Adam;
+use crate::pack::TrainedSkill;
+use crate::training::Training;
+
+/// One skill of a run that trained it together with others: its policy, or the moving average of it, and its discriminator.
+/// The critic stays behind, because a run of one skill asks it other things. Any other checkpoint stays as it is.
+pub(super) fn skill_alone(mut checkpoint: Checkpoint, skill: &str) -> Checkpoint {
+    if !TrainedSkill::is_in(skill, &checkpoint) {
+        return checkpoint;
+    }
+    let mut take = |role: &str| checkpoint.networks.remove(&format!("{skill}.{role}"));
+    let ema = take(EMA);
+    let alone = [(ACTOR, ema.or_else(|| take(ACTOR))), (DISCRIMINATOR, take(DISCRIMINATOR))];
+    let mut networks: HashMap<_, _> =
+        alone.into_iter().filter_map(|(role, trained)| Some((role.to_owned(), trained?))).collect();
+    for trained in networks.values_mut() {
+        trained.adam = Adam { mean: Vec::new(), square: Vec::new(), steps: 0 };
+    }
+    let p = &checkpoint.progress;
+    Checkpoint::new(networks, (p.seed, p.samples, p.secs), p.learning_rate, p.rng)
+}
+
+/// Puts a checkpoint's networks into a training that `begins` with them, or continues; returns the seconds spent before.
+pub(super) fn restore(
+    training: &mut Training,
+    checkpoint: &Checkpoint,
+    path: &Path,
+    begins: bool,
+) -> Result<f64> {
+    for (role, network, adam) in training.networks_mut() {
+        // Discriminators of a parent or half-way can be learned anew, and the critic of a run that begins; a moving average
+        // begins where its policy is.
+        let actor = role.strip_suffix(EMA).map(|before| format!("{before}{ACTOR}"));
+        let known = checkpoint.networks.contains_key(&role);
+        let optional = role == PARENT_DISCRIMINATOR || role.contains('-') || (role == CRITIC && begins);
+        if optional && !known {
+            continue;
+        }
+        let trained = checkpoint.network(actor.filter(|_| !known).as_deref().unwrap_or(&role), path)?;
+        if trained.network.sizes() != network.sizes() {
+            bail!(
+                "{}: expected a {role} of sizes {:?}, found {:?}",
+                path.display(),
+                network.sizes(),
+                trained.network.sizes()
+            );
+        }
+        network.clone_from(&trained.network);
+        if let Some(adam) = adam {
+            adam.clone_from(&trained.adam);
+        }
+    }
+    training.samples = checkpoint.progress.samples;
+    training.learner.actors.iter_mut().for_each(|a| a.learning_rate = checkpoint.progress.learning_rate);
+    training.learner.rng = checkpoint.progress.rng;
+    Ok(checkpoint.progress.secs)
+}
