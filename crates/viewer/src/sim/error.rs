@@ -16,6 +16,28 @@ pub enum SimError {
     /// Settings of another ground.
     #[error(transparent)]
     Settings(#[from] physics::ModelMismatch),
+    /// What stands in a shared world.
+    #[error(transparent)]
+    World(#[from] physics_bridge::WorldError),
+    /// The scene inside the demo.
+    #[error(transparent)]
+    Scene(#[from] crate::playground::SceneFileError),
+    /// What the playground is not for.
+    #[error("expected {needs} for the playground: the empty floor has {found}")]
+    NotInPlayground {
+        /// What it needs.
+        needs: &'static str,
+        /// What was asked for.
+        found: &'static str,
+    },
+    /// Too many or too few characters for the playground.
+    #[error("expected 1 to {most} characters in the playground, found {found}")]
+    PlaygroundCharacters {
+        /// Places to start from.
+        most: usize,
+        /// What was asked for.
+        found: usize,
+    },
     /// Too many or too few characters.
     #[error("expected 1 to {} characters, found {found}", super::MAX_CHARACTERS)]
     Characters {
