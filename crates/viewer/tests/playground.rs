@@ -4,12 +4,14 @@ mod common;
 
 use std::sync::Arc;
 
+use common::harness::harness;
+use egui_kittest::Harness;
 use glam::{Vec2, Vec3};
 use physics_bridge::{Motion, PropHandle};
 use policy_core::{Buttons, CharacterPack, GamepadState, Heading};
-use viewer::app::{App, PanelLayout, ViewerCommand};
+use viewer::app::{App, Best, PanelLayout, ViewerCommand};
 use viewer::assets;
-use viewer::playground::CourseState;
+use viewer::playground::{BestTime, CourseState};
 use viewer::sim::{
     Engine, GhostKind, GroundKind, Held, LooseKind, MOST_BALLS, SPAWN_BUTTON, SceneKind, SharedWorld,
     SimConfig, SimError, Simulation, THROW_BUTTON,
@@ -258,4 +260,69 @@ fn scenes_change_while_the_demo_runs() {
     app.apply(ViewerCommand::Scene(SceneKind::Empty));
     assert_eq!((app.toasts.take_text(), app.sim.characters().len()), (None, 1));
     assert!(app.sim.shared().is_none());
+}
+
+/// The playground in a window of 900 x 700 points, with no panel in the way.
+fn window() -> Harness<'static, App> {
+    let layout = PanelLayout { hidden: true, ..PanelLayout::default() };
+    let mut harness = harness(App::new(playground(1), layout));
+    harness.run_steps(2);
+    harness
+}
+
+#[test]
+fn keys_throw_a_ball_at_the_mouse_and_put_a_prop_there() {
+    let mut harness = window();
+    let pieces = shared(&harness.state().sim).pieces().len();
+    harness.hover_at(egui::pos2(450.0, 300.0));
+    harness.key_press(egui::Key::T);
+    harness.run_steps(2);
+    assert_eq!(shared(&harness.state().sim).balls(), 1);
+    harness.key_press(egui::Key::Y);
+    harness.run_steps(2);
+    assert_eq!(shared(&harness.state().sim).pieces().len(), pieces + 2);
+    assert_eq!(harness.state().notice, None);
+}
+
+#[test]
+fn the_mouse_drags_a_prop() {
+    let mut harness = window();
+    let barrel = shared(&harness.state().sim).prop_named("barrel_1").unwrap();
+    let start = motion(&harness.state().sim, barrel).position;
+    let clip = harness.state().camera.view(0.0).clip_from_world(900.0 / 700.0).project_point3(start);
+    let at = egui::pos2((clip.x * 0.5 + 0.5) * 900.0, (0.5 - clip.y * 0.5) * 700.0);
+    harness.drag_at(at);
+    harness.run_steps(2);
+    for step in 1..=10 {
+        harness.hover_at(at - egui::vec2(0.0, 12.0 * step as f32));
+        harness.run_steps(1);
+    }
+    let grab = harness.state().grab.expect("the barrel is held");
+    assert_eq!(grab.held, Held::Prop(barrel));
+    for _ in 0..20 {
+        harness.state_mut().tick();
+    }
+    let moved = motion(&harness.state().sim, barrel).position - start;
+    assert!(moved.z > 0.2, "it is lifted: {moved}");
+    harness.drop_at(at);
+    harness.run_steps(2);
+    assert_eq!(harness.state().grab, None);
+}
+
+#[test]
+fn a_finished_course_keeps_its_best_time_beside_the_settings() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut app = App::new(playground(1), PanelLayout::default());
+    app.best = Best::beside(folder.path().join("layout.ron"));
+    let checkpoints = shared(&app.sim).scene().checkpoints.clone();
+    // Carried from one checkpoint to the next.
+    for checkpoint in &checkpoints {
+        assert!(app.sim.carry(0, checkpoint.at));
+        app.tick();
+    }
+    assert_eq!(shared(&app.sim).course().state(), CourseState::Finished);
+    let best = app.best.time().expect("a best time");
+    assert!((best.secs - (checkpoints.len() - 1) as f32 * app.sim.tick_secs()).abs() < 1e-4, "{best:?}");
+    let file = BestTime::file_beside(&folder.path().join("layout.ron"), "playground");
+    assert_eq!(BestTime::load(&file).unwrap(), Some(best));
 }

@@ -34,7 +34,11 @@ pub struct Cli {
 const EXAMPLES: &str = "\
 Examples:
   policy-space
-      in a window; F1 shows the controls, a gamepad is used when there is one
+      the playground in a window; F1 shows the controls, a gamepad is used when there is one
+  policy-space --scene empty
+      the bare floor, for the method
+  policy-space --headless --scene playground --script assets/scripts/walk.ron --seconds 8 --frames out/
+      pictures of a walk into the crates of the playground
   policy-space --terrain wavy --characters 20
       twenty characters on low hills
   policy-space --headless --script assets/scripts/tour.ron --seconds 20 --report report.json --frames out/

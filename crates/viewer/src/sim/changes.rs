@@ -1,5 +1,6 @@
 //! What changes a world between ticks: resets, settings, blend modes, ghosts, going back in time.
 
+use glam::Vec2;
 use policy_core::contract::{MAX_DISTANCE_M, Settings};
 use policy_core::{BlendMode, GamepadState, GraphPosition, Heading};
 
@@ -20,6 +21,16 @@ impl Simulation {
             self.totals.stood_up += 1;
             self.restart(index);
         }
+    }
+
+    /// Stands a character somewhere else, facing as it does. False when it can't stand there.
+    pub fn carry(&mut self, index: usize, to: Vec2) -> bool {
+        let heading = self.steered[index].heading();
+        let stood = self.bodies.stand_at(index, to, heading);
+        if stood {
+            self.restart(index);
+        }
+        stood
     }
 
     /// Puts every character back to the start.
