@@ -275,10 +275,10 @@ impl App {
         let mut shown = self.layout.shown;
         shown.collision_shapes |= !self.has_mesh;
         set_scene(scene, &self.sim, &self.camera, around, (self.alpha(), &shown, &self.trail));
-        if let Some(grab) = &self.grab {
-            if let Some(from) = self.origin_of(grab.held) {
-                scene.arrow(from, from + grab.pull, 0.012, [0.95, 0.3, 0.1, 1.0]);
-            }
+        if let Some(grab) = &self.grab
+            && let Some(from) = self.origin_of(grab.held)
+        {
+            scene.arrow(from, from + grab.pull, 0.012, [0.95, 0.3, 0.1, 1.0]);
         }
     }
 

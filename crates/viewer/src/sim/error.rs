@@ -1,5 +1,7 @@
 //! Why a world can't be made or changed.
 
+use crate::playground::SceneFileError;
+
 /// What stops a [`Simulation`](super::Simulation) from being made or changed.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
@@ -18,10 +20,10 @@ pub enum SimError {
     Settings(#[from] physics::ModelMismatch),
     /// What stands in a shared world.
     #[error(transparent)]
-    World(#[from] physics_bridge::WorldError),
+    World(Box<physics_bridge::WorldError>),
     /// The scene inside the demo.
     #[error(transparent)]
-    Scene(#[from] crate::playground::SceneFileError),
+    Scene(Box<SceneFileError>),
     /// What the playground is not for.
     #[error("expected {needs} for the playground: the empty floor has {found}")]
     NotInPlayground {
@@ -44,4 +46,16 @@ pub enum SimError {
         /// What was asked for.
         found: usize,
     },
+}
+
+impl From<physics_bridge::WorldError> for SimError {
+    fn from(error: physics_bridge::WorldError) -> Self {
+        Self::World(Box::new(error))
+    }
+}
+
+impl From<SceneFileError> for SimError {
+    fn from(error: SceneFileError) -> Self {
+        Self::Scene(Box::new(error))
+    }
 }
