@@ -15,6 +15,7 @@ pub mod mesh;
 pub mod overlay;
 pub mod pads;
 mod panels;
+pub mod playground;
 pub mod pose_clip;
 pub mod recorder;
 pub mod render;

@@ -1,5 +1,7 @@
 //! Sets the scene: what of the world is drawn, and how. Reads the simulation, changes nothing.
 
+mod things;
+
 use std::collections::VecDeque;
 
 use glam::{Mat4, Quat, Vec2, Vec3};
@@ -59,7 +61,7 @@ impl Trail {
         if !at.is_finite() {
             return;
         }
-        let point = at.extend(sim.model().height_at(at.x, at.y) + 0.012);
+        let point = at.extend(sim.player().state.ground_height + 0.012);
         match self.points.back() {
             Some(last) if last.distance(point) < TRAIL_STEP => return,
             // A jump is no walk.
@@ -107,8 +109,12 @@ pub fn set_scene(
     scene.focus = scene.view.target.with_z(sim.player().state.ground_height);
     scene.figures.clear();
     scene.markers.clear();
+    scene.things.clear();
     scene.ribbons.clear();
     scene.hide_figures = shown.collision_shapes;
+    if let Some(shared) = sim.shared() {
+        things::set(scene, shared, alpha);
+    }
     for index in 0..sim.characters().len() {
         let figure = figure(sim, sim.poses(index, alpha), tint(index));
         if shown.collision_shapes {
@@ -132,14 +138,14 @@ pub fn set_scene(
         target(scene, sim);
     }
     if shown.contact_forces {
-        for contact in sim.character(0).contacts().iter().filter(|c| c.other.is_none()) {
+        for contact in sim.ground_contacts(0) {
             let tip = contact.position + contact.force * 0.0012;
             scene.arrow(contact.position, tip, 0.012, [0.15, 0.75, 0.35, 1.0]);
         }
     }
     if shown.centre_of_mass {
-        let centre = sim.character(0).centre_of_mass();
-        let ground = sim.model().height_at(centre.x, centre.y) + 0.015;
+        let centre = sim.centre_of_mass(0);
+        let ground = sim.height_at(centre.truncate(), centre.z) + 0.015;
         scene.ball(centre, 0.045, [0.9, 0.15, 0.2, 1.0]);
         scene.line(centre, centre.with_z(ground), 0.008, [[0.9, 0.15, 0.2, 0.8]; 2]);
         ring(scene, centre.with_z(ground), 0.06, [0.9, 0.15, 0.2, 1.0]);
@@ -148,7 +154,7 @@ pub fn set_scene(
 
 fn figure(sim: &Simulation, poses: BodyPoses, tint: [f32; 4]) -> Figure {
     let root = poses.positions[0];
-    let height = |dx: f32, dy: f32| sim.model().height_at(root.x + dx, root.y + dy);
+    let height = |dx: f32, dy: f32| sim.height_at(root.truncate() + Vec2::new(dx, dy), root.z);
     // Over half a metre: what a patch of shadow lies on, not the edge of a step.
     let slope = [height(0.25, 0.0) - height(-0.25, 0.0), height(0.0, 0.25) - height(0.0, -0.25)];
     Figure {
@@ -177,7 +183,8 @@ fn tint(index: usize) -> [f32; 4] {
 
 fn target(scene: &mut Scene, sim: &Simulation) {
     let Some(at) = sim.player().command.target.filter(|t| t.is_finite()) else { return };
-    let ground = at.extend(sim.model().height_at(at.x, at.y) + 0.015);
+    let below = sim.player().state.root().position.z + 0.5;
+    let ground = at.extend(sim.height_at(at, below) + 0.015);
     ring(scene, ground, 0.16, TARGET_COLOUR);
     ring(scene, ground, 0.05, TARGET_COLOUR);
     let turn = Quat::from_rotation_x(std::f32::consts::PI);

@@ -13,6 +13,7 @@ use viewer::app::{
     ViewerCommand,
 };
 use viewer::camera::CameraMode;
+use viewer::sim::Held;
 
 /// The demo as it is at the first start.
 fn app() -> App {
@@ -95,7 +96,7 @@ fn the_first_steps_are_ticked_off_by_playing() {
     app.pad.state.buttons.set(Button::East, true);
     until_done(&mut app, FirstStep::Roll);
     let body = app.sim.pack().skeleton().root();
-    app.grab = Some(Grab { body, pull: glam::Vec3::Y * 0.1 });
+    app.grab = Some(Grab { held: Held::Body(0, body), pull: glam::Vec3::Y * 0.1 });
     until_done(&mut app, FirstStep::Pull);
     app.grab = None;
     // The list stays for a moment, then it is gone for good.

@@ -44,7 +44,7 @@ const RULES: &[Rule] = &[
         &["policy-core", "physics", "physics-bridge", "clips", "random", "files", "evaluation"],
         &[],
     ),
-    rule("viewer", &["policy-core", "physics", "physics-bridge", "gamepad", "files", "pca"], &[]),
+    rule("viewer", &["policy-core", "physics", "physics-bridge", "gamepad", "files", "pca", "random"], &[]),
     rule(
         "integration-tests",
         &["policy-core", "gamepad", "physics-bridge", "physics-rapier", "clips", "trainer", "viewer"],

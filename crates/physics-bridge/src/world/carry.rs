@@ -63,7 +63,6 @@ impl World {
             }
         }
         self.place(placements);
-        self.restart_history();
     }
 
     /// Puts what is new where it belongs, and computes what follows.

@@ -1,10 +1,12 @@
 //! Sense, control, actuate: the characters of a world in the same terms as one alone.
 
+use glam::Vec3;
 use policy_core::{CharacterState, Command, Controller};
 
 use super::World;
 use super::handle::CharacterHandle;
 use super::recover::{Divergence, Diverging, Remedy};
+use super::solids::vec3;
 use crate::cause::Cause;
 use crate::description::body_poses::BodyPoses;
 use crate::description::model::Model;
@@ -44,6 +46,16 @@ impl World {
         let index = self.scene.characters.index_of(character)?;
         poses_into(&self.data, &self.places.character(index).layout, out);
         Ok(())
+    }
+
+    /// Centre of mass of a whole character, metres, world space.
+    ///
+    /// # Errors
+    /// When the handle is stale.
+    pub fn centre_of_mass(&self, character: CharacterHandle) -> Result<Vec3, WorldError> {
+        let index = self.scene.characters.index_of(character)?;
+        let root = self.places.character(index).layout.body_ids[0];
+        Ok(vec3(self.data.subtree_com()[root]).as_vec3())
     }
 
     /// Sets the angles that the motors of a character pull its joints to, radians, in the order of the skeleton. They

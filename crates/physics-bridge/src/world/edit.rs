@@ -41,8 +41,8 @@ pub(super) enum Placement {
 
 impl World {
     /// Adds and removes things, all at once. What stays keeps its state bit for bit, and handles stay valid. When
-    /// `change` fails, nothing is changed. Contacts are forgotten until the next tick; a recorded history begins
-    /// anew when the simulation is built anew.
+    /// `change` fails, nothing is changed. Contacts are forgotten until the next tick. A recorded history begins
+    /// anew when the simulation is built anew, and goes on otherwise.
     ///
     /// # Errors
     /// Those of `change`, and when MuJoCo refuses what was put together.

@@ -226,6 +226,12 @@ impl World {
         Ok(())
     }
 
+    /// Ends all grabs: also those that a restored state brought back.
+    pub fn release_all(&mut self) {
+        self.forces.grabs = [None; MAX_GRABS];
+        self.forces.under_way = true;
+    }
+
     /// The entry of a grab, which is not empty.
     fn grab_mut(&mut self, grab: GrabHandle) -> Result<&mut Option<Grab>, WorldError> {
         let slot = self.forces.grabs.get_mut(grab.index());

@@ -3,16 +3,22 @@
 use std::path::Path;
 use std::sync::Arc;
 
+use glam::Vec3;
 use policy_core::CharacterPack;
 
 use super::{App, FirstSteps, Layers, PanelLayout, ViewerCommand};
 use crate::appearance;
 use crate::dropped::{Dropped, DroppedError};
 use crate::render::Appearance;
-use crate::sim::{SimConfig, SimError};
+use crate::sim::{Engine, GroundKind, SceneKind, SimConfig, SimError};
 
 /// How far a failure is rewound, seconds.
 const REWIND_SECS: f32 = 2.0;
+
+/// Speed of a ball that is thrown at the mouse, metres per second.
+const THROWN_MPS: f32 = 12.0;
+/// It starts so far in front of the eye, metres.
+const BEFORE_EYE_M: f32 = 0.6;
 
 /// Commands that mean nothing while a clip is shown.
 fn needs_a_simulation(command: &ViewerCommand) -> bool {
@@ -29,6 +35,9 @@ fn needs_a_simulation(command: &ViewerCommand) -> bool {
             | C::Settings(_)
             | C::Engine(_)
             | C::Ground(_)
+            | C::Scene(_)
+            | C::Throw { .. }
+            | C::Spawn { .. }
             | C::Characters(_)
     )
 }
@@ -121,6 +130,9 @@ impl App {
             }
             ViewerCommand::Engine(engine) => self.rebuild(SimConfig { engine, ..*self.sim.config() }),
             ViewerCommand::Ground(ground) => self.rebuild(SimConfig { ground, ..*self.sim.config() }),
+            ViewerCommand::Scene(scene) => self.change_scene(scene),
+            ViewerCommand::Throw { from, along } => self.throw(from, along),
+            ViewerCommand::Spawn { from, along } => self.spawn(from, along),
             ViewerCommand::Characters(characters) => {
                 self.rebuild(SimConfig { characters, ..*self.sim.config() });
             }
@@ -129,7 +141,7 @@ impl App {
                 self.sim.rewind_to(((REWIND_SECS / self.sim.tick_secs()).round() as usize).min(kept));
                 // Those that keep no history are still in the state that diverged.
                 for index in self.failure.take().map_or_else(Vec::new, |failure| failure.characters) {
-                    if self.sim.character(index).history_len() == 0 {
+                    if !self.sim.keeps_history(index) {
                         self.sim.stand_up(index);
                     }
                 }
@@ -158,6 +170,40 @@ impl App {
         }
         self.clock.paused = true;
         self.sim.rewind_to(age);
+    }
+
+    /// Begins anew in another scene, with as many characters as it usually has, on ground and in an engine that it
+    /// allows.
+    fn change_scene(&mut self, scene: SceneKind) {
+        let mut config = SimConfig { scene, ..*self.sim.config() };
+        if scene != self.sim.config().scene {
+            config.characters = scene.usual_characters();
+        }
+        if scene == SceneKind::Playground {
+            (config.ground, config.engine) = (GroundKind::Flat, Engine::Mujoco);
+        }
+        self.rebuild(config);
+        let player = &self.sim.player().state;
+        self.camera.settle(player.root().position, player.ground_height);
+    }
+
+    fn throw(&mut self, from: Vec3, along: Vec3) {
+        let Some(shared) = self.sim.shared_mut() else { return self.nothing_to_throw() };
+        // From in front of the eye, so that the ball does not fill the picture.
+        if let Err(error) = shared.throw_at(from + along * BEFORE_EYE_M, along, THROWN_MPS) {
+            self.toasts.error(error.to_string());
+        }
+    }
+
+    fn spawn(&mut self, from: Vec3, along: Vec3) {
+        let Some(shared) = self.sim.shared_mut() else { return self.nothing_to_throw() };
+        if let Err(error) = shared.spawn_at(from, along) {
+            self.toasts.error(error.to_string());
+        }
+    }
+
+    fn nothing_to_throw(&mut self) {
+        self.toasts.error("Balls and props are in the playground: the empty floor has none.");
     }
 
     fn restart(&mut self) {

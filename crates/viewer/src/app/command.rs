@@ -1,13 +1,13 @@
 //! Everything a panel, key or mouse can ask for.
 
-use glam::Vec2;
+use glam::{Vec2, Vec3};
 use policy_core::contract::Settings;
 use policy_core::{BlendMode, Goal, SkillId};
 
 use super::{Grab, KeyAction, Layers, PanelKind, Preferences, Preset};
 use crate::camera::CameraMode;
 use crate::scene_setup::Shown;
-use crate::sim::{Engine, GhostKind, GroundKind};
+use crate::sim::{Engine, GhostKind, GroundKind, SceneKind};
 
 /// What to record.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -58,10 +58,26 @@ pub enum ViewerCommand {
     Engine(Engine),
     /// Another ground.
     Ground(GroundKind),
+    /// What stands on the floor.
+    Scene(SceneKind),
     /// So many characters.
     Characters(usize),
     /// Pull a body, or release it.
     Grab(Option<Grab>),
+    /// Throw a ball from a point at what a line from there meets, metres, world space.
+    Throw {
+        /// The point.
+        from: Vec3,
+        /// Direction of the line.
+        along: Vec3,
+    },
+    /// Put a prop where a line from a point meets something.
+    Spawn {
+        /// The point.
+        from: Vec3,
+        /// Direction of the line.
+        along: Vec3,
+    },
     /// How the camera moves.
     Camera(CameraMode),
     /// The camera behind the character, as at the start.

@@ -24,10 +24,11 @@ pub fn key_help(map: &KeyMap) -> Vec<(String, &'static str)> {
 }
 
 /// What keys do that can't be changed.
-const OTHER_KEYS: [(&str, &str); 13] = [
+const OTHER_KEYS: [(&str, &str); 14] = [
     ("right mouse, I O U L", "turn the camera; wheel: closer or away"),
     ("Home", "camera behind the character"),
-    ("left mouse on a body", "pull it"),
+    ("left mouse on a body", "pull it; in the playground also a prop"),
+    ("T, Y", "in the playground: throw a ball at the mouse, put a prop there"),
     ("C", "camera: orbit, follow, first person, fixed, free"),
     ("P, N, B", "pause, one tick, one tick back"),
     ("minus, plus", "slower, faster"),
@@ -41,7 +42,7 @@ const OTHER_KEYS: [(&str, &str); 13] = [
 ];
 
 /// What pad controls do, for the help overlay.
-pub const PAD: [(&str, &str); 9] = [
+pub const PAD: [(&str, &str); 10] = [
     ("left stick", "direction and speed"),
     ("right stick", "camera"),
     ("right trigger", "faster: walk, jog, run"),
@@ -51,4 +52,5 @@ pub const PAD: [(&str, &str); 9] = [
     ("Y or triangle, X or square", "jump, kick, where the character can"),
     ("right shoulder", "hold: the other style, where the character has one"),
     ("left shoulder", "knock the character over"),
+    ("d-pad up, down", "in the playground: throw a ball, put a prop down"),
 ];

@@ -24,8 +24,8 @@ pub struct Keys {
     flight: [f32; 3],
 }
 
-/// Keys that turn and fly the camera.
-const CAMERA_KEYS: [Key; 10] = [
+/// Keys that turn and fly the camera, throw balls and put props down.
+const PICTURE_KEYS: [Key; 12] = [
     Key::I,
     Key::O,
     Key::U,
@@ -36,6 +36,8 @@ const CAMERA_KEYS: [Key; 10] = [
     Key::ArrowRight,
     Key::PageUp,
     Key::PageDown,
+    Key::T,
+    Key::Y,
 ];
 
 impl Keys {
@@ -151,7 +153,7 @@ fn rebind(ui: &Ui, app: &App, action: KeyAction, commands: &mut Vec<ViewerComman
     });
     let Some(key) = pressed else { return };
     if key != Key::Escape {
-        if shortcuts(app).iter().any(|(taken, _)| *taken == key) || CAMERA_KEYS.contains(&key) {
+        if shortcuts(app).iter().any(|(taken, _)| *taken == key) || PICTURE_KEYS.contains(&key) {
             commands.push(ViewerCommand::Complain(format!("The key {} has a use already.", key.name())));
         } else {
             let mut preferences = app.layout.preferences;

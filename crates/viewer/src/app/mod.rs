@@ -4,6 +4,7 @@
 //! Panels read an [`App`] and push [`ViewerCommand`]s; [`App::apply`] alone acts on them.
 
 mod apply;
+mod best;
 mod clock;
 mod command;
 mod first_steps;
@@ -25,6 +26,7 @@ mod user;
 use std::sync::mpsc::Receiver;
 
 use egui::Ui;
+use glam::Vec3;
 use physics::PhysicsCharacter;
 use policy_core::GamepadState;
 
@@ -33,8 +35,9 @@ use crate::camera::Camera;
 use crate::panels;
 use crate::render::Scene;
 use crate::scene_setup::{Trail, set_scene};
-use crate::sim::{Divergence, Playback, Simulation};
+use crate::sim::{Divergence, Held, Playback, Simulation};
 use crate::text::counted;
+pub use best::Best;
 pub use clock::Clock;
 pub use command::{Record, ViewerCommand};
 pub use first_steps::{Doing, FirstStep, FirstSteps};
@@ -136,6 +139,10 @@ pub struct App {
     overridden_at: GamepadState,
     /// The ground has changed: the frame composer uploads it and clears this.
     pub ground_changed: bool,
+    /// The best time over the course of this scene.
+    pub best: Best,
+    /// What diverged in a shared world and was put right, so far.
+    pub mishaps: usize,
     /// A file that was dropped on the window; the frame composer opens it.
     pub dropped: Option<std::path::PathBuf>,
     analysis_soon: Option<Receiver<Analysis>>,
@@ -180,6 +187,8 @@ impl App {
             refused: None,
             overridden_at: GamepadState::default(),
             ground_changed: true,
+            best: Best::default(),
+            mishaps: 0,
             dropped: None,
             analysis_soon: None,
         }
@@ -243,6 +252,7 @@ impl App {
         self.tour.tick(self.sim.tick_secs());
         self.observe_first_steps(&input);
         self.note_refusal();
+        self.follow_course();
         if self.sim.playback().is_some_and(Playback::has_restarted) {
             self.trail.clear();
         }
@@ -265,8 +275,9 @@ impl App {
         let mut shown = self.layout.shown;
         shown.collision_shapes |= !self.has_mesh;
         set_scene(scene, &self.sim, &self.camera, around, (self.alpha(), &shown, &self.trail));
-        if let Some(grab) = &self.grab {
-            let from = self.sim.poses(0, self.alpha()).positions[grab.body.index()];
+        if let Some(grab) = &self.grab
+            && let Some(from) = self.origin_of(grab.held)
+        {
             scene.arrow(from, from + grab.pull, 0.012, [0.95, 0.3, 0.1, 1.0]);
         }
     }
@@ -301,11 +312,28 @@ impl App {
 
     /// Pulls the body that the mouse holds.
     fn pull(&mut self) {
-        if let Some(grab) = &self.grab {
-            let (body, force) = (grab.body, grab.force());
+        let pulled = self.grab.and_then(|grab| Some((grab.held, self.origin_of(grab.held)? + grab.pull)));
+        if let Some(shared) = self.sim.shared_mut() {
+            shared.hold(pulled);
+        } else if let Some(Grab { held: Held::Body(index, body), .. }) = self.grab {
+            let force = self.grab.map_or(Vec3::ZERO, |grab| grab.force());
             // A force that is out of range is not worth stopping for: the next frame brings another.
             let secs = self.sim.tick_secs();
-            let _ = self.sim.character_mut(0).push(body, force, secs);
+            let _ = self.sim.character_mut(index).push(body, force, secs);
+        }
+    }
+
+    /// Where the origin of what is held is in the picture, metres; `None` when it is gone.
+    pub(crate) fn origin_of(&self, held: Held) -> Option<Vec3> {
+        match held {
+            Held::Body(index, _) if index >= self.sim.characters().len() => None,
+            Held::Body(index, body) => {
+                self.sim.poses(index, self.alpha()).positions.get(body.index()).copied()
+            }
+            Held::Prop(prop) => {
+                let piece = self.sim.shared()?.pieces().iter().find(|piece| piece.handle == prop)?;
+                Some(piece.pose(self.alpha()).0)
+            }
         }
     }
 }

@@ -1,19 +1,18 @@
-//! The mouse in the picture: turns the camera, pulls bodies.
-
-use egui::{PointerButton, Rect, Ui};
-use glam::{Affine3A, Vec2, Vec3};
-use physics_bridge::ShapeKind;
-use policy_core::BodyId;
+//! The mouse in the picture: turns the camera, pulls bodies and props, throws balls.
 
 use super::{App, ViewerCommand};
 use crate::render::View;
+use crate::sim::{Held, SharedWorld};
+use egui::{PointerButton, Rect, Ui};
+use glam::{Affine3A, Vec2, Vec3};
+use physics_bridge::{ShapeKind, Solid};
 
-/// A body that the mouse pulls.
+/// A body or prop that the mouse pulls.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Grab {
-    /// The body.
-    pub body: BodyId,
-    /// From the body to the mouse, world space, metres.
+    /// What is pulled.
+    pub held: Held,
+    /// From its origin to the mouse, world space, metres.
     pub pull: Vec3,
 }
 
@@ -24,7 +23,7 @@ const STRONGEST: f32 = 800.0;
 const REACH: f32 = 0.015;
 
 impl Grab {
-    /// Force on the body, newtons, world space.
+    /// Force on a body of a character that lives alone, newtons, world space.
     #[must_use]
     pub fn force(&self) -> Vec3 {
         (self.pull * STIFFNESS).clamp_length_max(STRONGEST)
@@ -48,22 +47,48 @@ pub(super) fn read(ui: &mut Ui, app: &App, free: Rect, around: f32, commands: &m
         (None, Some(_)) if response.drag_started_by(PointerButton::Primary) => {
             // Where the button went down counts, not where the mouse is by the time that it is a drag.
             let ray = pressed.map(|at| Ray::through(&view, screen, at));
-            let body = ray.and_then(|ray| nearest_body(app, &ray));
-            held = body.is_some();
-            commands.push(ViewerCommand::Grab(body.map(|body| Grab { body, pull: Vec3::ZERO })));
+            let found = ray.and_then(|ray| nearest(app, &ray));
+            held = found.is_some();
+            commands.push(ViewerCommand::Grab(found.map(|held| Grab { held, pull: Vec3::ZERO })));
         }
         (Some(grab), Some(at)) if response.dragged_by(PointerButton::Primary) => {
-            let from = app.sim.poses(0, app.alpha()).positions[grab.body.index()];
-            let pull = Ray::through(&view, screen, at).at_depth_of(from, &view) - from;
-            commands.push(ViewerCommand::Grab(Some(Grab { pull: pull.clamp_length_max(2.0), ..*grab })));
+            // What is gone can't be held.
+            let pulled = app.origin_of(grab.held).map(|from| {
+                let pull = Ray::through(&view, screen, at).at_depth_of(from, &view) - from;
+                Grab { pull: pull.clamp_length_max(2.0), ..*grab }
+            });
+            commands.push(ViewerCommand::Grab(pulled));
         }
         (Some(_), _) => commands.push(ViewerCommand::Grab(None)),
         _ => {}
     }
+    throw(ui, app, free, &view, commands);
     let turning = response.dragged_by(PointerButton::Secondary) || response.dragged_by(PointerButton::Middle);
     if turning || (response.dragged_by(PointerButton::Primary) && !held) {
         let by = response.drag_delta();
         commands.push(ViewerCommand::Turn(Vec2::new(by.x, by.y) * 0.006));
+    }
+}
+
+/// Keys that throw a ball at the mouse and put a prop there.
+const THROW_KEY: egui::Key = egui::Key::T;
+const SPAWN_KEY: egui::Key = egui::Key::Y;
+
+fn throw(ui: &Ui, app: &App, free: Rect, view: &View, commands: &mut Vec<ViewerCommand>) {
+    if ui.ctx().text_edit_focused() || app.sim.playback().is_some() {
+        return;
+    }
+    let (throws, spawns, mouse) = ui.input(|input| {
+        (input.key_pressed(THROW_KEY), input.key_pressed(SPAWN_KEY), input.pointer.latest_pos())
+    });
+    // Without a mouse in the picture they go to its middle.
+    let at = mouse.filter(|at| free.contains(*at)).unwrap_or(free.center());
+    let Ray { from, along } = Ray::through(view, ui.ctx().content_rect(), at);
+    if throws {
+        commands.push(ViewerCommand::Throw { from, along });
+    }
+    if spawns {
+        commands.push(ViewerCommand::Spawn { from, along });
     }
 }
 
@@ -127,29 +152,56 @@ impl Ray {
     }
 }
 
-/// The body of the player whose shape the ray meets first, or passes within [`REACH`] of.
-fn nearest_body(app: &App, ray: &Ray) -> Option<BodyId> {
+/// The prop or the body of a character whose shape the ray meets first, or passes within [`REACH`] of. On the empty floor
+/// the player's alone.
+fn nearest(app: &App, ray: &Ray) -> Option<Held> {
     // A clip can't be pulled at: the mouse turns the camera.
     if app.sim.playback().is_some() {
         return None;
     }
-    let poses = app.sim.poses(0, app.alpha());
-    let mut nearest: Option<(f32, BodyId)> = None;
-    for shape in app.sim.model().shapes() {
-        let i = shape.body.index();
-        let world_from_body = Affine3A::from_rotation_translation(poses.rotations[i], poses.positions[i]);
-        let world_from_shape =
-            world_from_body * Affine3A::from_rotation_translation(shape.rotation, shape.position);
+    let mut nearest: Option<(f32, Held)> = None;
+    let mut meet = |world_from_shape: Affine3A, kind: &ShapeKind, held: Held| {
         let shape_from_world = world_from_shape.inverse();
         let local = Ray {
             from: shape_from_world.transform_point3(ray.from),
             along: shape_from_world.transform_vector3(ray.along),
         };
-        if let Some(depth) = local.meets(&shape.kind)
+        if let Some(depth) = local.meets(kind)
             && nearest.is_none_or(|(best, _)| depth < best)
         {
-            nearest = Some((depth, shape.body));
+            nearest = Some((depth, held));
+        }
+    };
+    let shared = app.sim.shared();
+    let characters = if shared.is_some() { app.sim.characters().len() } else { 1 };
+    for index in 0..characters {
+        let poses = app.sim.poses(index, app.alpha());
+        for shape in app.sim.model().shapes() {
+            let i = shape.body.index();
+            let world_from_body = Affine3A::from_rotation_translation(poses.rotations[i], poses.positions[i]);
+            let body_from_shape = Affine3A::from_rotation_translation(shape.rotation, shape.position);
+            meet(world_from_body * body_from_shape, &shape.kind, Held::Body(index, shape.body));
         }
     }
-    nearest.map(|(_, body)| body)
+    for piece in shared.into_iter().flat_map(SharedWorld::pieces) {
+        let (position, rotation) = piece.pose(app.alpha());
+        let world_from_piece = Affine3A::from_rotation_translation(rotation, position);
+        if let Some(kind) = hull(&piece.solid) {
+            meet(world_from_piece, &kind, Held::Prop(piece.handle));
+        }
+    }
+    nearest.map(|(_, held)| held)
+}
+
+/// The shape that the mouse meets: a cylinder counts as the cuboid around it.
+fn hull(solid: &Solid) -> Option<ShapeKind> {
+    match *solid {
+        Solid::Sphere { radius } => Some(ShapeKind::Sphere { radius }),
+        Solid::Capsule { radius, half_length } => Some(ShapeKind::Capsule { radius, half_length }),
+        Solid::Cylinder { radius, half_length } => {
+            Some(ShapeKind::Cuboid { half_extents: Vec3::new(radius, radius, half_length) })
+        }
+        Solid::Cuboid { half_extents } => Some(ShapeKind::Cuboid { half_extents }),
+        _ => None,
+    }
 }

@@ -15,7 +15,7 @@ use clap::{Args, Parser, Subcommand};
 use policy_core::BlendMode;
 
 use crate::app::App;
-use crate::sim::{Engine, GroundKind};
+use crate::sim::{Engine, GroundKind, SceneKind};
 use crate::text;
 pub use values::{GhostChoice, PanelList};
 
@@ -34,7 +34,11 @@ pub struct Cli {
 const EXAMPLES: &str = "\
 Examples:
   policy-space
-      in a window; F1 shows the controls, a gamepad is used when there is one
+      the playground in a window; F1 shows the controls, a gamepad is used when there is one
+  policy-space --scene empty
+      the bare floor, for the method
+  policy-space --headless --scene playground --script assets/scripts/walk.ron --seconds 8 --frames out/
+      pictures of a walk into the crates of the playground
   policy-space --terrain wavy --characters 20
       twenty characters on low hills
   policy-space --headless --script assets/scripts/tour.ron --seconds 20 --report report.json --frames out/
@@ -87,7 +91,7 @@ pub struct Demo {
         value_name = "FILE",
         conflicts_with_all = [
             "script", "recording", "report", "character", "mode", "ghost", "physics", "terrain", "characters",
-            "seed",
+            "seed", "scene",
         ]
     )]
     pub poses: Option<PathBuf>,
@@ -144,9 +148,13 @@ pub struct Demo {
     /// The ground: flat, wavy or steps.
     #[arg(long, default_value = "flat", value_parser = values::ground)]
     pub terrain: GroundKind,
-    /// Number of characters, 1 to 200.
-    #[arg(long, default_value_t = 1, value_name = "N", value_parser = values::characters)]
-    pub characters: usize,
+    /// What stands on the floor: playground or empty. A window opens on the playground, unless another choice needs the
+    /// empty floor; a run without a window is on the empty floor.
+    #[arg(long, value_parser = values::scene)]
+    pub scene: Option<SceneKind>,
+    /// Number of characters, 1 to 200; in the playground 1 to 5. By default 1, in the playground 5.
+    #[arg(long, value_name = "N", value_parser = values::characters)]
+    pub characters: Option<usize>,
     /// Places the hills and turns the crowd.
     #[arg(long, default_value_t = 1)]
     pub seed: u32,
@@ -159,6 +167,21 @@ pub struct Demo {
     /// Print what the player's character does to standard error, twice a second.
     #[arg(long)]
     pub trace: bool,
+}
+
+impl Demo {
+    /// What stands on the floor: what was asked for, or the playground in a window where no other choice needs the empty
+    /// floor.
+    #[must_use]
+    pub fn scene(&self) -> SceneKind {
+        let needs_empty = self.headless
+            || self.poses.is_some()
+            || self.ghost.is_some()
+            || self.characters.is_some()
+            || self.terrain != GroundKind::Flat
+            || self.physics != Engine::Mujoco;
+        self.scene.unwrap_or(if needs_empty { SceneKind::Empty } else { SceneKind::Playground })
+    }
 }
 
 /// Longest run without a window, seconds.
@@ -205,6 +228,7 @@ mod tests {
     #[test]
     fn wrong_values_are_refused_and_say_what_is_expected() {
         assert!(error(&["--terrain", "lava"]).contains("flat, wavy, steps"));
+        assert!(error(&["--scene", "moon"]).contains("empty, playground"));
         assert!(error(&["--mode", "add"]).contains("parameters, actions, switch"));
         assert!(error(&["--physics", "bullet"]).contains("mujoco, rapier"));
         assert!(error(&["--ghost", "bullet"]).contains("other"));

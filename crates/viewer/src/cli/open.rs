@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use super::{Demo, GhostChoice, load};
-use crate::app::{App, PanelKind, PanelLayout, Side, Toasts};
+use crate::app::{App, Best, PanelKind, PanelLayout, Side, Toasts};
 use crate::dropped::word_about;
 use crate::render::Appearance;
 use crate::sim::{GhostKind, Playback, SimConfig, Simulation};
@@ -55,10 +55,12 @@ pub fn open(demo: &Demo) -> anyhow::Result<Opened> {
     } else {
         word.into_iter().for_each(|word| toasts.note(word));
     }
+    let scene = demo.scene();
     let config = SimConfig {
+        scene,
         engine: demo.physics,
         ground: demo.terrain,
-        characters: demo.characters,
+        characters: demo.characters.unwrap_or(scene.usual_characters()),
         seed: demo.seed,
         history: !demo.headless && clip.is_none(),
     };
@@ -78,6 +80,9 @@ pub fn open(demo: &Demo) -> anyhow::Result<Opened> {
         })?;
     }
     let mut app = App::new(sim, layout);
+    if let Some(home) = &home {
+        app.best = Best::beside(home.clone());
+    }
     app.has_mesh = appearance.mesh().is_some();
     if let Some(distance) = demo.distance {
         app.camera.distance = distance;

@@ -2,6 +2,8 @@
 
 use serde::Serialize;
 
+use crate::playground::CourseState;
+use crate::sim::SharedWorld;
 use crate::text::counted;
 
 /// The report, as written to the file.
@@ -11,6 +13,8 @@ pub struct Report {
     pub seconds: f64,
     /// The signal that ended the run before its time.
     pub ended_by: Option<&'static str>,
+    /// What stood on the floor.
+    pub scene: &'static str,
     /// Number of characters.
     pub characters: usize,
     /// Physics engine.
@@ -41,12 +45,45 @@ pub struct Report {
     pub control_ticks_per_second: f64,
     /// Time of one controller's tick, mean.
     pub policy_microseconds_per_tick: f64,
+    /// The player's run over the course, where there is one.
+    pub course: Option<CourseReport>,
     /// Over all positions and velocities: equal runs have equal hashes.
     pub state_hash: String,
     /// Pictures written.
     pub frames: usize,
     /// What drew them.
     pub adapter: Option<String>,
+}
+
+/// How far the player came on the course.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct CourseReport {
+    /// Checkpoints of the course.
+    pub checkpoints: usize,
+    /// Those that the last run passed.
+    pub passed: usize,
+    /// True when the run has ended.
+    pub finished: bool,
+    /// Time on the clock.
+    pub seconds: f32,
+    /// Falls during the run.
+    pub falls: u32,
+}
+
+impl CourseReport {
+    /// Of a world with a course.
+    #[must_use]
+    pub fn of(shared: &SharedWorld, tick_secs: f32) -> Self {
+        let (course, checkpoints) = (shared.course(), shared.scene().checkpoints.len());
+        let finished = course.state() == CourseState::Finished;
+        Self {
+            checkpoints,
+            passed: if finished { checkpoints } else { course.next() },
+            finished,
+            seconds: course.secs(tick_secs),
+            falls: course.falls(),
+        }
+    }
 }
 
 impl Report {

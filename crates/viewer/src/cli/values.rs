@@ -4,7 +4,7 @@ use policy_core::BlendMode;
 
 use super::MOST_SECS;
 use crate::app::PanelKind;
-use crate::sim::{Engine, GhostKind, GroundKind, MAX_CHARACTERS};
+use crate::sim::{Engine, GhostKind, GroundKind, MAX_CHARACTERS, SceneKind};
 
 /// Most pixels of a picture: one takes about 45 bytes of memory.
 const MOST_PIXELS: u32 = 3840 * 2160;
@@ -66,6 +66,11 @@ pub(super) fn mode(text: &str) -> Result<BlendMode, String> {
 pub(super) fn ground(text: &str) -> Result<GroundKind, String> {
     let names = GroundKind::ALL.map(GroundKind::name).join(", ");
     GroundKind::from_name(text).ok_or_else(|| format!("expected one of {names}"))
+}
+
+pub(super) fn scene(text: &str) -> Result<SceneKind, String> {
+    let names = SceneKind::ALL.map(SceneKind::name).join(", ");
+    SceneKind::from_name(text).ok_or_else(|| format!("expected one of {names}"))
 }
 
 pub(super) fn engine(text: &str) -> Result<Engine, String> {

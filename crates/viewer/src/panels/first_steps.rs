@@ -15,7 +15,9 @@ pub(super) fn show(ui: &Ui, app: &App, free: Rect, commands: &mut Vec<ViewerComm
     if !app.layout.preferences.shows_first_steps || app.sim.playback().is_some() {
         return;
     }
-    let area = egui::Area::new(egui::Id::unique("first steps")).fixed_pos(free.left_top() + vec2(12.0, 12.0));
+    // In the playground the line of its course is above.
+    let down = if app.sim.shared().is_some() { 52.0 } else { 12.0 };
+    let area = egui::Area::new(egui::Id::unique("first steps")).fixed_pos(free.left_top() + vec2(12.0, down));
     area.show(ui.ctx(), |ui| {
         frame().show(ui, |ui| {
             ui.horizontal(|ui| {

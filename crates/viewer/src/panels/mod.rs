@@ -2,6 +2,7 @@
 
 mod analysis;
 mod blend_mode;
+mod course;
 mod failure;
 mod first_steps;
 mod graph;
@@ -52,6 +53,7 @@ pub(crate) fn show(ui: &mut Ui, app: &App, commands: &mut Vec<ViewerCommand>) ->
     } else {
         first_steps::show(ui, app, free, commands);
     }
+    course::show(ui, app, free);
     toasts::show(ui, app, free, commands);
     if app.help {
         help::show(ui, app, commands);

@@ -3,25 +3,31 @@
 use egui::{Slider, Ui};
 
 use crate::app::{App, Clock, ViewerCommand};
-use crate::sim::{Engine, GhostKind, GroundKind, LEAST_FRICTION, MAX_CHARACTERS};
+use crate::sim::{Engine, GhostKind, GroundKind, LEAST_FRICTION, MAX_CHARACTERS, SceneKind};
 use crate::text::noun;
 
 pub(super) fn show(ui: &mut Ui, app: &App, commands: &mut Vec<ViewerCommand>) {
     time(ui, app, commands);
     matter(ui, app, commands);
-    engine(ui, app, commands);
-    ui.horizontal(|ui| {
-        ui.label("Ground");
-        for ground in GroundKind::ALL {
-            let label = ui.selectable_label(app.sim.config().ground == ground, ground.name());
-            if label.on_hover_text("Another ground; the characters begin anew on it.").clicked() {
-                commands.push(ViewerCommand::Ground(ground));
+    scene(ui, app, commands);
+    let on_empty_floor = app.sim.shared().is_none();
+    ui.add_enabled_ui(on_empty_floor, |ui| {
+        engine(ui, app, commands);
+        ui.horizontal(|ui| {
+            ui.label("Ground");
+            for ground in GroundKind::ALL {
+                let label = ui.selectable_label(app.sim.config().ground == ground, ground.name());
+                let label = label.on_hover_text("Another ground; the characters begin anew on it.");
+                if label.on_disabled_hover_text(ONLY_EMPTY).clicked() {
+                    commands.push(ViewerCommand::Ground(ground));
+                }
             }
-        }
+        });
     });
     let mut characters = app.sim.config().characters;
     let label = noun(characters as u64, "character");
-    let slider = Slider::new(&mut characters, 1..=MAX_CHARACTERS).logarithmic(true).text(label);
+    let most = app.sim.shared().map_or(MAX_CHARACTERS, |shared| shared.scene().starts.len());
+    let slider = Slider::new(&mut characters, 1..=most).logarithmic(on_empty_floor).text(label);
     // A crowd is made anew for every number, so only where the drag ends.
     let response = ui.add(slider.update_while_editing(false));
     let response = response.on_hover_text("How many characters there are. All do what you ask.");
@@ -31,6 +37,23 @@ pub(super) fn show(ui: &mut Ui, app: &App, commands: &mut Vec<ViewerCommand>) {
     ui.weak("Pull a body with the left mouse button.");
 }
 
+/// What is greyed in the playground, and why.
+const ONLY_EMPTY: &str = "On the empty floor only: the playground is flat, in MuJoCo, and without ghosts.";
+const NO_MASS: &str = "On the empty floor only: a shared world keeps the masses of its characters.";
+
+/// What stands on the floor.
+fn scene(ui: &mut Ui, app: &App, commands: &mut Vec<ViewerCommand>) {
+    ui.horizontal(|ui| {
+        ui.label("Scene");
+        for scene in SceneKind::ALL {
+            let label = ui.selectable_label(app.sim.config().scene == scene, scene.name());
+            if label.on_hover_text("What stands on the floor; the characters begin anew.").clicked() {
+                commands.push(ViewerCommand::Scene(scene));
+            }
+        }
+    });
+}
+
 /// The engine, and a ghost in the other one.
 fn engine(ui: &mut Ui, app: &App, commands: &mut Vec<ViewerCommand>) {
     let present = app.sim.engine();
@@ -38,7 +61,8 @@ fn engine(ui: &mut Ui, app: &App, commands: &mut Vec<ViewerCommand>) {
         ui.label("Engine");
         for engine in Engine::ALL {
             let label = ui.selectable_label(engine == present, engine.title());
-            if label.on_hover_text("The characters begin anew in it.").clicked() {
+            let label = label.on_hover_text("The characters begin anew in it.");
+            if label.on_disabled_hover_text(ONLY_EMPTY).clicked() {
                 commands.push(ViewerCommand::Engine(engine));
             }
         }
@@ -47,7 +71,8 @@ fn engine(ui: &mut Ui, app: &App, commands: &mut Vec<ViewerCommand>) {
     let mut shown = app.sim.ghost().is_some_and(|g| g.kind() == ghost);
     let label = format!("Ghost in {}", present.other().title());
     let told = "A second character from the same state, under the same commands, in the other engine.";
-    if ui.checkbox(&mut shown, label).on_hover_text(told).changed() {
+    let ghost_box = ui.checkbox(&mut shown, label).on_hover_text(told);
+    if ghost_box.on_disabled_hover_text(ONLY_EMPTY).changed() {
         commands.push(ViewerCommand::Ghost(shown.then_some(ghost)));
     }
 }
@@ -113,7 +138,10 @@ fn matter(ui: &mut Ui, app: &App, commands: &mut Vec<ViewerCommand>) {
         0.0..=3.0,
         (" ×", "strength", "Of all joints, against the character's own"),
     );
-    factor(&mut settings.mass, 0.2..=3.0, (" ×", "mass", "Of all bodies, against the character's own"));
+    let mass = Slider::new(&mut settings.mass, 0.2..=3.0).suffix(" ×").text("mass");
+    ui.add_enabled(app.sim.shared().is_none(), mass)
+        .on_hover_text("Of all bodies, against the character's own")
+        .on_disabled_hover_text(NO_MASS);
     if settings != before {
         commands.push(ViewerCommand::Settings(settings));
     }

@@ -122,6 +122,14 @@ impl SunView {
             let uv = Vec2::new(clip.x, -clip.y) * 0.5 + 0.5;
             (low, high) = (low.min(uv), high.max(uv));
         }
+        for thing in &scene.things {
+            let (centre, reach) = thing.sphere();
+            if centre.distance(scene.focus) < radius + reach {
+                let clip = clip_from_world.project_point3(centre);
+                let (uv, grown) = (Vec2::new(clip.x, -clip.y) * 0.5 + 0.5, Vec2::splat(0.5 * reach / radius));
+                (low, high) = (low.min(uv - grown), high.max(uv + grown));
+            }
+        }
         let margin = Vec2::splat((0.32 + config.light.penumbra_m) / (2.0 * radius));
         let (low, high) = ((low - margin).max(Vec2::splat(0.002)), (high + margin).min(Vec2::splat(0.998)));
         Self { clip_from_world, extent: 2.0 * radius, casters: [low.x, low.y, high.x, high.y] }

@@ -42,7 +42,7 @@ pub struct Renderer {
     /// `None` without a mesh.
     mesh_buffers: Option<MeshBuffers>,
     ground: (wgpu::Buffer, u32),
-    solids: (wgpu::Buffer, [std::ops::Range<u32>; 5]),
+    solids: (wgpu::Buffer, [std::ops::Range<u32>; scene::SOLIDS]),
     shadow_map: wgpu::TextureView,
     shadow_group: wgpu::BindGroup,
     frame: wgpu::Buffer,
@@ -52,6 +52,7 @@ pub struct Renderer {
     figures_group: wgpu::BindGroup,
     contacts: Growing,
     markers: Growing,
+    things: Growing,
     ribbons: Growing,
     targets: Option<Targets>,
 }
@@ -83,6 +84,7 @@ impl Renderer {
             solids: (fixed(device, "solids", Usage::VERTEX, &solid_vertices), ranges),
             contacts: Growing::new(device, "contacts", Usage::VERTEX),
             markers: Growing::new(device, "markers", Usage::VERTEX),
+            things: Growing::new(device, "things", Usage::VERTEX),
             ribbons: Growing::new(device, "ribbons", Usage::VERTEX),
             targets: None,
             gpu: gpu.clone(),
@@ -163,6 +165,9 @@ impl Renderer {
             depth_stencil_attachment: Some(depth_attachment(&self.shadow_map, wgpu::StoreOp::Store)),
             ..Default::default()
         });
+        pass.set_bind_group(0, &self.frame_group, &[]);
+        pass.set_pipeline(&self.pipelines.thing_shadow);
+        self.draw_things(&mut pass, counts);
         // A shadow's edge is softer than the coarse mesh is coarse.
         let Some(level) = self.mesh_buffers.as_ref().and_then(|buffers| buffers.levels.last()) else {
             return;
@@ -171,7 +176,6 @@ impl Renderer {
             return;
         }
         pass.set_pipeline(&self.pipelines.skinned_shadow);
-        pass.set_bind_group(0, &self.frame_group, &[]);
         pass.set_bind_group(2, &self.figures_group, &[]);
         pass.set_vertex_buffer(0, level.vertices.slice(..));
         pass.set_index_buffer(level.indices.slice(..), wgpu::IndexFormat::Uint32);
@@ -199,6 +203,8 @@ impl Renderer {
         pass.set_bind_group(0, &self.frame_group, &[]);
         pass.set_bind_group(1, &self.shadow_group, &[]);
         self.draw_figures(&mut pass, counts);
+        pass.set_pipeline(&self.pipelines.thing);
+        self.draw_things(&mut pass, counts);
         pass.set_pipeline(&self.pipelines.ground);
         pass.set_vertex_buffer(0, self.ground.0.slice(..));
         pass.draw(0..self.ground.1, 0..1);
@@ -214,6 +220,15 @@ impl Renderer {
         pass.set_vertex_buffer(0, self.solids.0.slice(..));
         pass.set_vertex_buffer(1, self.markers.buffer().slice(..));
         for (vertices, instances) in self.solids.1.iter().zip(&counts.markers) {
+            pass.draw(vertices.clone(), instances.clone());
+        }
+    }
+
+    /// One draw call for each solid.
+    fn draw_things(&self, pass: &mut wgpu::RenderPass<'_>, counts: &Counts) {
+        pass.set_vertex_buffer(0, self.solids.0.slice(..));
+        pass.set_vertex_buffer(1, self.things.buffer().slice(..));
+        for (vertices, instances) in self.solids.1.iter().zip(&counts.things) {
             pass.draw(vertices.clone(), instances.clone());
         }
     }

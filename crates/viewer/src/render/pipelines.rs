@@ -10,12 +10,13 @@ use crate::mesh::MeshVertex;
 pub(super) const DEPTH: wgpu::TextureFormat = wgpu::TextureFormat::Depth32Float;
 
 /// Every shader by name, complete with what they share. For the pipelines, and for checks of the shaders.
-pub const SHADERS: [(&str, &str); 6] = [
+pub const SHADERS: [(&str, &str); 7] = [
     ("skinned", concat!(include_str!("shaders/common.wgsl"), include_str!("shaders/skinned.wgsl"))),
     ("ground", concat!(include_str!("shaders/common.wgsl"), include_str!("shaders/ground.wgsl"))),
     ("contact", concat!(include_str!("shaders/common.wgsl"), include_str!("shaders/contact.wgsl"))),
     ("sky", concat!(include_str!("shaders/common.wgsl"), include_str!("shaders/sky.wgsl"))),
     ("shape", concat!(include_str!("shaders/common.wgsl"), include_str!("shaders/shape.wgsl"))),
+    ("thing", concat!(include_str!("shaders/common.wgsl"), include_str!("shaders/thing.wgsl"))),
     ("ribbon", concat!(include_str!("shaders/common.wgsl"), include_str!("shaders/ribbon.wgsl"))),
 ];
 
@@ -37,6 +38,8 @@ pub(super) struct Pipelines {
     pub(super) contact: wgpu::RenderPipeline,
     pub(super) sky: wgpu::RenderPipeline,
     pub(super) shape: wgpu::RenderPipeline,
+    pub(super) thing: wgpu::RenderPipeline,
+    pub(super) thing_shadow: wgpu::RenderPipeline,
     pub(super) ribbon: wgpu::RenderPipeline,
 }
 
@@ -174,9 +177,17 @@ impl Pipelines {
             bias: -40,
             ..plain
         });
+        let instanced = [solid, Some(layout_of::<MarkerData>(wgpu::VertexStepMode::Instance, &MARKER))];
+        let thing = maker.make(&Recipe {
+            name: "thing",
+            groups: &lit,
+            buffers: &instanced,
+            depth: (true, Less),
+            ..plain
+        });
         let shape = maker.make(&Recipe {
             name: "shape",
-            buffers: &[solid, Some(layout_of::<MarkerData>(wgpu::VertexStepMode::Instance, &MARKER))],
+            buffers: &instanced,
             blend: true,
             depth: (true, LessEqual),
             ..plain
@@ -187,23 +198,31 @@ impl Pipelines {
             blend: true,
             ..plain
         });
-        let skinned_shadow = shadow_pipeline(device, layouts);
-        Self { skinned, skinned_shadow, ground, contact, sky, shape, ribbon }
+        let groups = [frame, None, Some(&layouts.figures)];
+        let back = Some(wgpu::Face::Back);
+        let skinned_shadow = shadow_pipeline(device, "skinned", &groups, &[Some(mesh_layout())], back);
+        let thing_shadow = shadow_pipeline(device, "thing", &groups[..1], &instanced, None);
+        Self { skinned, skinned_shadow, ground, contact, sky, shape, thing, thing_shadow, ribbon }
     }
 }
 
-fn shadow_pipeline(device: &wgpu::Device, layouts: &Layouts) -> wgpu::RenderPipeline {
-    let groups = [Some(&layouts.frame), None, Some(&layouts.figures)];
+fn shadow_pipeline(
+    device: &wgpu::Device,
+    name: &'static str,
+    groups: &[Option<&wgpu::BindGroupLayout>],
+    buffers: &[Option<wgpu::VertexBufferLayout<'_>>],
+    cull_mode: Option<wgpu::Face>,
+) -> wgpu::RenderPipeline {
     device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
         label: Some("shadow"),
-        layout: Some(&pipeline_layout(device, &groups)),
+        layout: Some(&pipeline_layout(device, groups)),
         vertex: wgpu::VertexState {
-            module: &shader(device, "skinned"),
+            module: &shader(device, name),
             entry_point: Some("vs_shadow"),
-            buffers: &[Some(mesh_layout())],
+            buffers,
             compilation_options: wgpu::PipelineCompilationOptions::default(),
         },
-        primitive: wgpu::PrimitiveState { cull_mode: Some(wgpu::Face::Back), ..Default::default() },
+        primitive: wgpu::PrimitiveState { cull_mode, ..Default::default() },
         depth_stencil: Some(depth_state((true, wgpu::CompareFunction::Less), 2, 1.5)),
         multisample: wgpu::MultisampleState::default(),
         fragment: None,

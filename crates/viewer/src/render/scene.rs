@@ -44,6 +44,9 @@ pub struct Figure {
     pub slope: [f32; 2],
 }
 
+/// Number of simple solids.
+pub(super) const SOLIDS: usize = 6;
+
 /// A simple solid.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Solid {
@@ -57,11 +60,14 @@ pub enum Solid {
     Cone,
     /// Flat ring in the xy plane, radius 1, a tenth wide.
     Ring,
+    /// Cylinder of radius 1 along z from -1 to 1, with lids.
+    Drum,
 }
 
 impl Solid {
     /// All solids in the order of the vertex buffer.
-    pub const ALL: [Solid; 5] = [Solid::Ball, Solid::Tube, Solid::Cube, Solid::Cone, Solid::Ring];
+    pub const ALL: [Solid; SOLIDS] =
+        [Solid::Ball, Solid::Tube, Solid::Cube, Solid::Cone, Solid::Ring, Solid::Drum];
 }
 
 /// A solid somewhere in the world.
@@ -73,6 +79,15 @@ pub struct Marker {
     pub place: Mat4,
     /// Colour and opacity.
     pub colour: [f32; 4],
+}
+
+impl Marker {
+    /// A ball around it: middle and radius, metres.
+    pub(super) fn sphere(&self) -> (Vec3, f32) {
+        let axes = [self.place.x_axis, self.place.y_axis, self.place.z_axis];
+        let squared: f32 = axes.iter().map(|axis| axis.truncate().length_squared()).sum();
+        (self.place.w_axis.truncate(), squared.sqrt())
+    }
 }
 
 /// Corner of a flat triangle in the world.
@@ -96,8 +111,11 @@ pub struct Scene {
     pub figures: Vec<Figure>,
     /// Hides the figures but not their shadows, to see the collision shapes alone.
     pub hide_figures: bool,
-    /// Solids.
+    /// Solids of one plain colour, in front of everything that is drawn before them.
     pub markers: Vec<Marker>,
+    /// Opaque things of the world, which are lit, throw shadows and catch them. Their opacity says how they are marked,
+    /// so that rotation and size can be seen: 1 darkens the edges of a cube, less paints every other octant.
+    pub things: Vec<Marker>,
     /// Triangles, three vertices each.
     pub ribbons: Vec<RibbonVertex>,
 }

@@ -6,7 +6,7 @@ use std::ops::Range;
 use bytemuck::{Pod, Zeroable};
 use glam::{Vec2, Vec3};
 
-use super::scene::Solid;
+use super::scene::{SOLIDS, Solid};
 
 /// Corner of a solid or of the ground.
 #[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
@@ -25,7 +25,7 @@ impl SolidVertex {
 }
 
 /// All solids in one list of triangles, and the range of each in the order of [`Solid::ALL`].
-pub(super) fn solids() -> (Vec<SolidVertex>, [Range<u32>; 5]) {
+pub(super) fn solids() -> (Vec<SolidVertex>, [Range<u32>; SOLIDS]) {
     let mut all = Vec::new();
     let ranges = Solid::ALL.map(|solid| {
         let start = all.len() as u32;
@@ -38,6 +38,11 @@ pub(super) fn solids() -> (Vec<SolidVertex>, [Range<u32>; 5]) {
                 turned(&mut all, |t| (Vec2::new(1.0 - t, t), slant));
             }
             Solid::Ring => turned(&mut all, |t| (Vec2::new(0.9 + 0.1 * t, 0.0), Vec2::Y)),
+            Solid::Drum => {
+                turned(&mut all, |t| (Vec2::new(1.0, 2.0 * t - 1.0), Vec2::X));
+                turned(&mut all, |t| (Vec2::new(1.0 - t, 1.0), Vec2::Y));
+                turned(&mut all, |t| (Vec2::new(t, -1.0), Vec2::NEG_Y));
+            }
         }
         start..all.len() as u32
     });
@@ -151,7 +156,7 @@ mod tests {
     #[test]
     fn normals_of_solids_point_outwards() {
         let (vertices, ranges) = solids();
-        for range in &ranges[..3] {
+        for range in ranges[..3].iter().chain(&ranges[5..]) {
             for v in &vertices[range.start as usize..range.end as usize] {
                 let (p, n) = (Vec3::from(v.position), Vec3::from(v.normal));
                 assert!((n.length() - 1.0).abs() < 1e-5 && p.dot(n) > 0.0, "{v:?}");

@@ -1,13 +1,15 @@
 //! From a [`Scene`] to the buffers of one picture.
 
 use super::gpu_data::{ContactData, FrameData, InstanceData, MarkerData, contacts};
-use super::{Renderer, Scene, Solid, bind_buffers};
+use super::scene::SOLIDS;
+use super::{Marker, Renderer, Scene, Solid, bind_buffers};
 
 /// Numbers of what one picture draws, filled in by the upload.
 pub(super) struct Counts {
     pub(super) figures: u32,
     pub(super) contacts: u32,
-    pub(super) markers: [std::ops::Range<u32>; 5],
+    pub(super) markers: [std::ops::Range<u32>; SOLIDS],
+    pub(super) things: [std::ops::Range<u32>; SOLIDS],
     pub(super) ribbons: u32,
     pub(super) hide_figures: bool,
 }
@@ -41,20 +43,29 @@ impl Renderer {
         }
         self.contacts.write(device, queue, &patches);
         self.ribbons.write(device, queue, &scene.ribbons);
-        let mut sorted = Vec::with_capacity(scene.markers.len());
-        let markers = Solid::ALL.map(|solid| {
-            let start = sorted.len() as u32;
-            let of_kind = scene.markers.iter().filter(|m| m.solid == solid);
-            sorted.extend(of_kind.map(|m| MarkerData::new(m.place, m.colour)));
-            start..sorted.len() as u32
-        });
-        self.markers.write(device, queue, &sorted);
+        let (instances_of_markers, markers) = by_solid(&scene.markers);
+        self.markers.write(device, queue, &instances_of_markers);
+        let (instances_of_things, things) = by_solid(&scene.things);
+        self.things.write(device, queue, &instances_of_things);
         Counts {
             figures: instances.len() as u32,
             contacts: patches.len() as u32,
             markers,
+            things,
             ribbons: scene.ribbons.len() as u32,
             hide_figures: scene.hide_figures,
         }
     }
+}
+
+/// All of them, those of one solid side by side, and the range of each solid.
+fn by_solid(all: &[Marker]) -> (Vec<MarkerData>, [std::ops::Range<u32>; SOLIDS]) {
+    let mut sorted = Vec::with_capacity(all.len());
+    let ranges = Solid::ALL.map(|solid| {
+        let start = sorted.len() as u32;
+        let of_kind = all.iter().filter(|m| m.solid == solid);
+        sorted.extend(of_kind.map(|m| MarkerData::new(m.place, m.colour)));
+        start..sorted.len() as u32
+    });
+    (sorted, ranges)
 }

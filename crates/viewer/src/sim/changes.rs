@@ -1,10 +1,11 @@
 //! What changes a world between ticks: resets, settings, blend modes, ghosts, going back in time.
 
-use physics::PhysicsCharacter;
+use glam::Vec2;
 use policy_core::contract::{MAX_DISTANCE_M, Settings};
 use policy_core::{BlendMode, GamepadState, GraphPosition, Heading};
 
-use super::{Ghost, GhostKind, LEAST_FRICTION, SimError, Simulation};
+use super::bodies::Bodies;
+use super::{Ghost, GhostKind, LEAST_FRICTION, SimError, Simulation, SteeredCharacter};
 
 /// Way that a character must have before the end of the world, metres.
 const ROOM_M: f32 = 100.0;
@@ -15,11 +16,21 @@ impl Simulation {
         let (at, heading) = (self.steered[index].position(), self.steered[index].heading());
         // Also for a place that is no number.
         let near = at.length() < MAX_DISTANCE_M - ROOM_M;
-        let at = if near { at } else { self.config.start_of(index) };
-        if self.crowd.character_mut(index).stand_at(at.x, at.y, heading, 0.0).is_ok() {
+        let at = if near { at } else { self.start_of(index).0 };
+        if self.bodies.stand_at(index, at, heading) {
             self.totals.stood_up += 1;
             self.restart(index);
         }
+    }
+
+    /// Stands a character somewhere else, facing as it does. False when it can't stand there.
+    pub fn carry(&mut self, index: usize, to: Vec2) -> bool {
+        let heading = self.steered[index].heading();
+        let stood = self.bodies.stand_at(index, to, heading);
+        if stood {
+            self.restart(index);
+        }
+        stood
     }
 
     /// Puts every character back to the start.
@@ -27,10 +38,16 @@ impl Simulation {
         if self.playback.is_some() {
             return self.show_pose(0);
         }
-        for index in 0..self.steered.len() {
-            let (at, heading) = (self.config.start_of(index), self.config.heading_of(index));
-            if self.crowd.character_mut(index).stand_at(at.x, at.y, heading, 0.0).is_ok() {
-                self.restart(index);
+        if self.shared().is_some() {
+            // Props are back where they were too. What was built once is built again.
+            let built = self.rebuild(self.config);
+            debug_assert!(built.is_ok(), "{built:?}");
+        } else {
+            for index in 0..self.steered.len() {
+                let (at, heading) = self.start_of(index);
+                if self.bodies.stand_at(index, at, heading) {
+                    self.restart(index);
+                }
             }
         }
         self.mapper.reset();
@@ -40,8 +57,12 @@ impl Simulation {
 
     /// Begins anew with a character that was put somewhere. The player's history begins with its pad.
     fn restart(&mut self, index: usize) {
-        self.steered[index].restart(self.crowd.character(index));
-        if index == 0 {
+        self.steered[index].restart(self.bodies.of(index));
+        if self.shared().is_some() {
+            // They share one past.
+            self.steered.iter_mut().for_each(SteeredCharacter::forget_past);
+        }
+        if index == 0 || self.shared().is_some() {
             self.pads.clear();
             *self.pads.next() = self.last_pad;
         }
@@ -54,8 +75,13 @@ impl Simulation {
     pub fn set_settings(&mut self, settings: Settings) -> Result<(), SimError> {
         let settings = Settings { friction: settings.friction.max(LEAST_FRICTION), ..settings };
         let model = self.model.with_settings(settings)?;
-        for character in self.crowd.characters_mut() {
-            character.set_model(&model)?;
+        match &mut self.bodies {
+            Bodies::Apart(crowd) => {
+                for character in crowd.characters_mut() {
+                    character.set_model(&model)?;
+                }
+            }
+            Bodies::Together(shared) => shared.set_model(model.described())?,
         }
         if let Some(ghost) = &mut self.ghost {
             ghost.set_settings(settings)?;
@@ -74,7 +100,13 @@ impl Simulation {
     /// # Errors
     /// When that engine can't load the body; nothing is changed then.
     pub fn start_ghost(&mut self, kind: GhostKind) -> Result<(), SimError> {
-        self.ghost = Ghost::of(self.crowd.character(0), &self.steered[0], kind)?;
+        let Bodies::Apart(crowd) = &self.bodies else {
+            return Err(SimError::NotInPlayground {
+                needs: "a character without a ghost",
+                found: "room for one",
+            });
+        };
+        self.ghost = Ghost::of(crowd.character(0), &self.steered[0], kind)?;
         Ok(())
     }
 
@@ -95,10 +127,12 @@ impl Simulation {
     /// Takes every character that keeps a history to its state `age` ticks ago, with its controller. The next tick
     /// continues from there as it did the first time, bit for bit under the same pad; what came after is forgotten.
     pub fn rewind_to(&mut self, age: usize) {
-        for (steered, character) in self.steered.iter_mut().zip(self.crowd.characters_mut()) {
-            if character.rewind_to(age).is_ok() {
-                steered.rewind_to(age, character);
-            }
+        let rewound: Vec<bool> = match &mut self.bodies {
+            Bodies::Apart(crowd) => crowd.characters_mut().map(|c| c.rewind_to(age).is_ok()).collect(),
+            Bodies::Together(shared) => vec![shared.rewind_to(age); self.steered.len()],
+        };
+        for (index, _) in rewound.iter().enumerate().filter(|(_, rewound)| **rewound) {
+            self.steered[index].rewind_to(age, self.bodies.of(index));
         }
         if let Some(pad) = self.pads.rewind_to(age).copied() {
             self.last_pad = pad;

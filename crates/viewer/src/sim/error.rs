@@ -1,5 +1,7 @@
 //! Why a world can't be made or changed.
 
+use crate::playground::SceneFileError;
+
 /// What stops a [`Simulation`](super::Simulation) from being made or changed.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
@@ -16,10 +18,44 @@ pub enum SimError {
     /// Settings of another ground.
     #[error(transparent)]
     Settings(#[from] physics::ModelMismatch),
+    /// What stands in a shared world.
+    #[error(transparent)]
+    World(Box<physics_bridge::WorldError>),
+    /// The scene inside the demo.
+    #[error(transparent)]
+    Scene(Box<SceneFileError>),
+    /// What the playground is not for.
+    #[error("expected {needs} for the playground: the empty floor has {found}")]
+    NotInPlayground {
+        /// What it needs.
+        needs: &'static str,
+        /// What was asked for.
+        found: &'static str,
+    },
+    /// Too many or too few characters for the playground.
+    #[error("expected 1 to {most} characters in the playground, found {found}")]
+    PlaygroundCharacters {
+        /// Places to start from.
+        most: usize,
+        /// What was asked for.
+        found: usize,
+    },
     /// Too many or too few characters.
     #[error("expected 1 to {} characters, found {found}", super::MAX_CHARACTERS)]
     Characters {
         /// What was asked for.
         found: usize,
     },
+}
+
+impl From<physics_bridge::WorldError> for SimError {
+    fn from(error: physics_bridge::WorldError) -> Self {
+        Self::World(Box::new(error))
+    }
+}
+
+impl From<SceneFileError> for SimError {
+    fn from(error: SceneFileError) -> Self {
+        Self::Scene(Box::new(error))
+    }
 }

@@ -1,33 +1,43 @@
 //! The world of the demo: characters in the physics, each with its controller. The window and runs without one use
 //! the same code. Knows nothing of drawing, devices or panels.
 
+mod bodies;
 mod changes;
 mod error;
 mod ghost;
 mod playback;
 mod queries;
 mod rewind;
+mod scene_kind;
 mod setup;
+mod shared;
 mod steered;
+mod throw;
 mod totals;
 
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
-use physics::{Character, Diverged, Model, PhysicsCharacter};
-use physics_bridge::{Crowd, ReplayFile};
+use physics::{Diverged, Model};
+use physics_bridge::ReplayFile;
 use policy_core::{
     Blend, BodyId, Button, CharacterPack, Command, CommandMapper, GamepadState, Goal, Heading, SkillId,
 };
 
+use bodies::Bodies;
+pub use bodies::GroundContact;
 pub use error::SimError;
 pub use ghost::{Ghost, GhostKind};
 pub use physics::Engine;
 pub use physics_bridge::GroundKind;
 pub use playback::Playback;
 use rewind::PadRing;
+pub use scene_kind::SceneKind;
 pub use setup::{MAX_CHARACTERS, SimConfig, model_of, rest_positions};
+use shared::Wishes;
+pub use shared::{Held, LooseKind, MOST_BALLS, Piece, SharedWorld};
 pub use steered::{SteeredCharacter, interpolated};
+pub use throw::{SPAWN_BUTTON, THROW_BUTTON};
 pub use totals::Totals;
 
 /// Seconds after which a character without a skill to get up is stood up.
@@ -94,7 +104,8 @@ pub struct Simulation {
     config: SimConfig,
     pack: Arc<CharacterPack>,
     model: Model,
-    crowd: Crowd<Character>,
+    bodies: Bodies,
+    wishes: Wishes,
     steered: Vec<SteeredCharacter>,
     ghost: Option<Ghost>,
     playback: Option<Playback>,
@@ -128,17 +139,12 @@ impl Simulation {
         let command = self.command(pad, camera);
         let home = self.steered[0].position();
         self.shove(pad, camera);
-        for steered in &mut self.steered {
-            steered.receive(&command, home);
-        }
-        self.crowd.control_tick_with(&mut self.steered, dt_secs, |_, steered| {
-            (&mut steered.controller, steered.command)
-        });
+        self.throw(pad, camera);
+        let divergences = self.step(&command, dt_secs);
         if let Some(ghost) = &mut self.ghost {
             ghost.tick(&command, home, dt_secs);
         }
-        self.times = TickTimes { policy: self.crowd.control_time(), whole: start.elapsed() };
-        let divergences = self.observe(dt_secs);
+        self.times.whole = start.elapsed();
         self.totals.times(self.times);
         self.last_pad = *pad;
         if divergences.iter().all(|d| d.character != 0) {
@@ -171,28 +177,69 @@ impl Simulation {
         }
         let force = (camera.direction() * SHOVE_NEWTON).extend(0.0);
         let Shove { body, least_height } = self.shove;
-        for (steered, character) in self.steered.iter_mut().zip(self.crowd.characters_mut()) {
+        for (index, steered) in self.steered.iter_mut().enumerate() {
             // The force is within the bounds of a push.
-            if steered.can_be_shoved(least_height) && character.push(body, force, SHOVE_SECS).is_ok() {
+            if steered.can_be_shoved(least_height) && self.bodies.push(index, body, force, SHOVE_SECS) {
                 steered.shoved_secs = SHOVE_SECS;
             }
         }
     }
 
-    /// Updates every character from its physics.
+    /// Controllers and physics of all characters.
+    fn step(&mut self, command: &Command, dt_secs: f32) -> Vec<Divergence> {
+        let home = self.steered[0].position();
+        match &mut self.bodies {
+            Bodies::Apart(crowd) => {
+                for steered in &mut self.steered {
+                    steered.receive(command, home);
+                }
+                crowd.control_tick_with(&mut self.steered, dt_secs, |_, steered| {
+                    (&mut steered.controller, steered.command)
+                });
+                self.times.policy = crowd.control_time();
+                self.observe(dt_secs)
+            }
+            Bodies::Together(shared) => {
+                shared.give_commands(command, self.wishes, &mut self.steered, dt_secs);
+                let put_back = shared.tick(&mut self.steered, self.model.described(), dt_secs);
+                self.times.policy = shared.control_time();
+                self.observe_together(&put_back, dt_secs);
+                Vec::new()
+            }
+        }
+    }
+
+    /// Updates every character of a shared world, which has put back what diverged.
+    fn observe_together(&mut self, put_back: &[usize], dt_secs: f32) {
+        for (index, steered) in self.steered.iter_mut().enumerate() {
+            let body = self.bodies.of(index);
+            if put_back.contains(&index) {
+                steered.put_back(body);
+                self.totals.stood_up += 1;
+            } else {
+                steered.observe(body, dt_secs, &mut self.totals);
+            }
+        }
+        if let Bodies::Together(shared) = &mut self.bodies {
+            shared.observe(&self.steered[0]);
+        }
+    }
+
+    /// Updates every character that lives alone from its physics.
     fn observe(&mut self, dt_secs: f32) -> Vec<Divergence> {
         let describe = |(character, diverged): (usize, &Diverged)| Divergence {
             character,
             what: diverged.to_string(),
             replay: diverged.replay().cloned(),
         };
-        let divergences: Vec<Divergence> = self.crowd.diverged().map(describe).collect();
+        let Bodies::Apart(crowd) = &self.bodies else { return Vec::new() };
+        let divergences: Vec<Divergence> = crowd.diverged().map(describe).collect();
         for (index, steered) in self.steered.iter_mut().enumerate() {
-            let character = self.crowd.character(index);
+            let body = self.bodies.of(index);
             if divergences.iter().any(|d| d.character == index) {
-                steered.observe_divergence(character);
+                steered.observe_divergence(body);
             } else {
-                steered.observe(character, dt_secs, &mut self.totals);
+                steered.observe(body, dt_secs, &mut self.totals);
             }
         }
         divergences

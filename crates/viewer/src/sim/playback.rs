@@ -5,6 +5,7 @@ use std::path::Path;
 use physics::PhysicsCharacter;
 use physics_bridge::{BodyPoses, Character, Model, Pose};
 
+use super::bodies::Bodies;
 use super::{Simulation, interpolated};
 use crate::pose_clip::{PoseClip, PoseClipError};
 
@@ -98,7 +99,7 @@ impl Playback {
 }
 
 impl Simulation {
-    /// Shows a clip from now on: the player's character is posed, nothing is simulated.
+    /// Shows a clip from now on, on the empty floor: the player's character is posed, nothing is simulated.
     pub fn play(&mut self, playback: Playback) {
         self.playback = Some(playback);
         self.show_pose(0);
@@ -127,10 +128,10 @@ impl Simulation {
         let Some(playback) = &mut self.playback else { return };
         playback.ticks = ticks;
         let (row, _) = playback.place(1.0);
-        let character = self.crowd.character_mut(0);
+        let Bodies::Apart(crowd) = &mut self.bodies else { return };
         // Every pose was tried when the clip was loaded.
-        if character.set_pose(&playback.poses.qpos[row], &playback.at_rest).is_ok() {
-            self.steered[0].restart(character);
+        if crowd.character_mut(0).set_pose(&playback.poses.qpos[row], &playback.at_rest).is_ok() {
+            self.steered[0].restart(self.bodies.of(0));
         }
     }
 

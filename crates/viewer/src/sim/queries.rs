@@ -2,11 +2,13 @@
 
 use std::sync::Arc;
 
+use glam::{Vec2, Vec3};
 use physics::{Character, Engine};
 use physics_bridge::{BodyPoses, Model};
 use policy_core::{BlendMode, CharacterPack};
 
-use super::{Ghost, SimConfig, Simulation, SteeredCharacter, TickTimes, Totals};
+use super::bodies::Bodies;
+use super::{Ghost, GroundContact, SharedWorld, SimConfig, Simulation, SteeredCharacter, TickTimes, Totals};
 
 impl Simulation {
     /// The pack.
@@ -57,21 +59,78 @@ impl Simulation {
         self.player().controller.config().blend_mode
     }
 
-    /// The physics of a character.
+    /// The physics of a character on the empty floor.
+    ///
+    /// # Panics
+    /// When there is none of that index, or the characters share a world.
+    #[must_use]
+    pub fn character(&self, index: usize) -> &Character {
+        match &self.bodies {
+            Bodies::Apart(crowd) => crowd.character(index),
+            Bodies::Together(_) => panic!("expected characters on the empty floor, found a shared world"),
+        }
+    }
+
+    /// The physics of a character on the empty floor, to change it.
+    ///
+    /// # Panics
+    /// As [`Simulation::character`].
+    pub fn character_mut(&mut self, index: usize) -> &mut Character {
+        match &mut self.bodies {
+            Bodies::Apart(crowd) => crowd.character_mut(index),
+            Bodies::Together(_) => panic!("expected characters on the empty floor, found a shared world"),
+        }
+    }
+
+    /// The world that all characters share with props; `None` on the empty floor.
+    #[must_use]
+    pub fn shared(&self) -> Option<&SharedWorld> {
+        match &self.bodies {
+            Bodies::Apart(_) => None,
+            Bodies::Together(shared) => Some(shared),
+        }
+    }
+
+    /// The same, to throw and to hold.
+    pub fn shared_mut(&mut self) -> Option<&mut SharedWorld> {
+        match &mut self.bodies {
+            Bodies::Apart(_) => None,
+            Bodies::Together(shared) => Some(shared),
+        }
+    }
+
+    /// True when the last seconds of a character are kept.
     ///
     /// # Panics
     /// When there is none of that index.
     #[must_use]
-    pub fn character(&self, index: usize) -> &Character {
-        self.crowd.character(index)
+    pub fn keeps_history(&self, index: usize) -> bool {
+        self.bodies.of(index).keeps_history()
     }
 
-    /// The physics of a character, to push it.
+    /// Where a character touches the ground, or what it touches in a shared world.
     ///
     /// # Panics
     /// When there is none of that index.
-    pub fn character_mut(&mut self, index: usize) -> &mut Character {
-        self.crowd.character_mut(index)
+    #[must_use]
+    pub fn ground_contacts(&self, index: usize) -> Vec<GroundContact> {
+        self.bodies.of(index).ground_contacts()
+    }
+
+    /// Centre of mass of a character, metres.
+    ///
+    /// # Panics
+    /// When there is none of that index.
+    #[must_use]
+    pub fn centre_of_mass(&self, index: usize) -> Vec3 {
+        self.bodies.of(index).centre_of_mass()
+    }
+
+    /// Height of the ground at a point: of the terrain, or of what stands on it and is not above `below`. Metres.
+    #[must_use]
+    pub fn height_at(&self, at: Vec2, below: f32) -> f32 {
+        let ground = self.model().height_at(at.x, at.y);
+        self.shared().map_or(ground, |shared| shared.scene().height_at(at, below).max(ground))
     }
 
     /// The second character of the side-by-side comparison.
@@ -101,8 +160,13 @@ impl Simulation {
     /// States that the player can be taken back by, and how far back it is now.
     #[must_use]
     pub fn history(&self) -> (usize, usize) {
-        let player = self.crowd.character(0);
-        (player.history_len().saturating_sub(1), player.history_age())
+        match &self.bodies {
+            Bodies::Apart(crowd) => {
+                let player = crowd.character(0);
+                (player.history_len().saturating_sub(1), player.history_age())
+            }
+            Bodies::Together(shared) => shared.history(),
+        }
     }
 
     /// Poses of the ghost between the last two ticks.

@@ -2,7 +2,6 @@
 //! continue bit for bit.
 
 use glam::Vec2;
-use physics::Character;
 use physics_bridge::HISTORY_SECS;
 use policy_core::{CharacterPack, ControllerState, GamepadState};
 
@@ -23,7 +22,7 @@ impl SavedTick {
     }
 }
 
-/// A ring of values, one for each tick, all allocated at the start. It moves as the history of a [`Character`] does.
+/// A ring of values, one for each tick, all allocated at the start. It moves as the history of the physics does.
 #[derive(Clone, Debug)]
 pub(super) struct Ring<T> {
     slots: Box<[T]>,
@@ -66,11 +65,6 @@ impl<T: Clone> Ring<T> {
 
 /// The pad of each tick, because buttons act when they go down.
 pub(super) type PadRing = Ring<GamepadState>;
-
-/// True when a character keeps a history, and its controller has to.
-pub(super) fn keeps_history(character: &Character) -> bool {
-    character.history_len() > 0
-}
 
 #[cfg(test)]
 mod tests {

@@ -7,9 +7,14 @@ use physics::{Character, Engine, Model, PhysicsCharacter};
 use physics_bridge::{BodyPoses, Crowd, GroundKind, HISTORY_SECS, ModelError, Pose};
 use policy_core::{Bindings, BlendMode, CharacterPack, CommandMapper, GamepadState, Heading};
 
+use super::bodies::Bodies;
 use super::rewind::PadRing;
-use super::{Overrides, Shove, SimError, Simulation, SteeredCharacter, TickTimes, Totals};
+use super::{
+    Overrides, SceneKind, SharedWorld, Shove, SimError, Simulation, SteeredCharacter, TickTimes, Totals,
+    Wishes,
+};
 use crate::assets;
+use crate::playground::Playground;
 
 /// Most characters in one world.
 pub const MAX_CHARACTERS: usize = 200;
@@ -23,11 +28,13 @@ const SPACING: f32 = 1.3;
 /// What a world is made of.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct SimConfig {
+    /// What stands on the floor. The playground is flat and in MuJoCo.
+    pub scene: SceneKind,
     /// The physics.
     pub engine: Engine,
     /// The ground.
     pub ground: GroundKind,
-    /// Characters, 1 to [`MAX_CHARACTERS`].
+    /// Characters, 1 to [`MAX_CHARACTERS`]; in the playground as many as it has starts.
     pub characters: usize,
     /// Places the hills and turns the crowd.
     pub seed: u32,
@@ -37,12 +44,19 @@ pub struct SimConfig {
 
 impl Default for SimConfig {
     fn default() -> Self {
-        Self { engine: Engine::default(), ground: GroundKind::Flat, characters: 1, seed: 1, history: false }
+        Self {
+            scene: SceneKind::Empty,
+            engine: Engine::default(),
+            ground: GroundKind::Flat,
+            characters: 1,
+            seed: 1,
+            history: false,
+        }
     }
 }
 
 impl SimConfig {
-    /// Where a character starts: the player at the origin, the others in a block behind it.
+    /// Where a character starts on the empty floor: the player at the origin, the others in a block behind it.
     #[must_use]
     pub fn start_of(&self, index: usize) -> Vec2 {
         let side = (self.characters as f32).sqrt().ceil() as usize;
@@ -97,7 +111,7 @@ pub fn rest_positions(model: &physics_bridge::Model) -> Vec<Vec3> {
 
 /// The parts of a world that depend on its characters.
 struct Populated {
-    crowd: Crowd<Character>,
+    bodies: Bodies,
     steered: Vec<SteeredCharacter>,
     pads: PadRing,
     shove: Shove,
@@ -112,14 +126,15 @@ impl Simulation {
         let described = model_of(&pack).map_err(physics::ModelError::from)?;
         let model =
             Model::new(&described, config.engine)?.with_terrain(config.ground.terrain(config.seed))?;
-        let Populated { crowd, steered, pads, shove } =
+        let Populated { bodies, steered, pads, shove } =
             populate(&model, &pack, BlendMode::default(), config)?;
         let mapper = CommandMapper::new(&pack, &Bindings::default());
         Ok(Self {
             config,
+            wishes: Wishes::new(&pack),
             pack,
             model,
-            crowd,
+            bodies,
             steered,
             ghost: None,
             playback: None,
@@ -158,7 +173,7 @@ impl Simulation {
             .with_settings(self.model().settings())?
             .with_terrain(self.config.ground.terrain(self.config.seed))?;
         let populated = populate(&model, &pack, self.blend_mode(), self.config)?;
-        self.mapper = CommandMapper::new(&pack, &Bindings::default());
+        (self.mapper, self.wishes) = (CommandMapper::new(&pack, &Bindings::default()), Wishes::new(&pack));
         self.overrides = Overrides::default();
         self.playback = None;
         self.pack = pack;
@@ -166,9 +181,20 @@ impl Simulation {
         Ok(())
     }
 
+    /// Where a character starts, and where it looks.
+    pub(super) fn start_of(&self, index: usize) -> (Vec2, Heading) {
+        match &self.bodies {
+            Bodies::Apart(_) => (self.config.start_of(index), self.config.heading_of(index)),
+            Bodies::Together(shared) => {
+                let start = shared.scene().starts[index];
+                (start.at, Heading::from_angle(start.heading))
+            }
+        }
+    }
+
     fn replace(&mut self, model: Model, populated: Populated) {
         self.model = model;
-        (self.crowd, self.steered) = (populated.crowd, populated.steered);
+        (self.bodies, self.steered) = (populated.bodies, populated.steered);
         (self.pads, self.shove) = (populated.pads, populated.shove);
         (self.ghost, self.last_pad) = (None, GamepadState::default());
         self.mapper.reset();
@@ -181,6 +207,25 @@ fn populate(
     mode: BlendMode,
     config: SimConfig,
 ) -> Result<Populated, SimError> {
+    let bodies = match config.scene {
+        SceneKind::Empty => apart(model, config)?,
+        SceneKind::Playground => together(model, config)?,
+    };
+    let steered: Vec<SteeredCharacter> = (0..config.characters)
+        .map(|index| SteeredCharacter::new(Arc::clone(pack), mode, bodies.of(index)))
+        .collect();
+    let skeleton = model.skeleton();
+    let shove = Shove {
+        body: skeleton.head().and_then(|head| skeleton.parent(head)).unwrap_or(skeleton.root()),
+        least_height: LYING * steered[0].state.root_height(),
+    };
+    let mut pads = PadRing::new(model.described().control_hz(), &GamepadState::default());
+    *pads.next() = GamepadState::default();
+    Ok(Populated { bodies, steered, pads, shove })
+}
+
+/// Characters that each live alone.
+fn apart(model: &Model, config: SimConfig) -> Result<Bodies, SimError> {
     if !(1..=MAX_CHARACTERS).contains(&config.characters) {
         return Err(SimError::Characters { found: config.characters });
     }
@@ -194,16 +239,20 @@ fn populate(
         }
         characters.push(character);
     }
-    let steered: Vec<SteeredCharacter> =
-        characters.iter().map(|c| SteeredCharacter::new(Arc::clone(pack), mode, c)).collect();
-    let skeleton = model.skeleton();
-    let shove = Shove {
-        body: skeleton.head().and_then(|head| skeleton.parent(head)).unwrap_or(skeleton.root()),
-        least_height: LYING * steered[0].state.root_height(),
-    };
-    let mut pads = PadRing::new(model.described().control_hz(), &GamepadState::default());
-    *pads.next() = GamepadState::default();
-    Ok(Populated { crowd: Crowd::new(characters, None)?, steered, pads, shove })
+    Ok(Bodies::Apart(Crowd::new(characters, None)?))
+}
+
+/// Characters in the world of the playground.
+fn together(model: &Model, config: SimConfig) -> Result<Bodies, SimError> {
+    if config.engine != Engine::Mujoco {
+        return Err(SimError::NotInPlayground { needs: "MuJoCo", found: "Rapier too" });
+    }
+    if config.ground != GroundKind::Flat {
+        return Err(SimError::NotInPlayground { needs: "flat ground", found: "hills and steps" });
+    }
+    let scene = Playground::shipped()?;
+    let shared = SharedWorld::new(scene, model.described(), config.characters, config.seed, config.history)?;
+    Ok(Bodies::Together(Box::new(shared)))
 }
 
 #[cfg(test)]

@@ -3,14 +3,14 @@
 use std::sync::Arc;
 
 use glam::Vec2;
-use physics::{Character, PhysicsCharacter};
 use physics_bridge::{BodyPoses, Pose};
 use policy_core::{
     Arithmetic, BlendMode, CharacterPack, CharacterState, Command, Controller, ControllerConfig,
     ControllerState, Goal, Heading, StateError, TickReport,
 };
 
-use super::rewind::{Ring, SavedTick, keeps_history};
+use super::bodies::BodyRef;
+use super::rewind::{Ring, SavedTick};
 use super::{SHOVED_BELOW_MPS, Totals};
 
 /// A gait without a direction is held within this distance of where it came to rest, metres.
@@ -48,10 +48,10 @@ pub struct SteeredCharacter {
 }
 
 impl SteeredCharacter {
-    pub(super) fn new(pack: Arc<CharacterPack>, mode: BlendMode, character: &Character) -> Self {
-        let skeleton = character.skeleton();
-        let history = keeps_history(character)
-            .then(|| Box::new(Ring::new(character.control_hz(), &SavedTick::new(&pack))));
+    pub(super) fn new(pack: Arc<CharacterPack>, mode: BlendMode, body: BodyRef<'_>) -> Self {
+        let skeleton = body.skeleton().unwrap_or(pack.skeleton());
+        let history =
+            body.keeps_history().then(|| Box::new(Ring::new(body.control_hz(), &SavedTick::new(&pack))));
         let mut steered = Self {
             state: CharacterState::new(skeleton),
             poses: [BodyPoses::new(skeleton), BodyPoses::new(skeleton)],
@@ -64,7 +64,7 @@ impl SteeredCharacter {
             history,
             controller: Controller::with_config(pack, config(mode)),
         };
-        steered.restart(character);
+        steered.restart(body);
         steered
     }
 
@@ -154,9 +154,9 @@ impl SteeredCharacter {
     }
 
     /// Updates poses, history and sums after a tick of `dt_secs`.
-    pub(super) fn observe(&mut self, character: &Character, dt_secs: f32, totals: &mut Totals) {
+    pub(super) fn observe(&mut self, body: BodyRef<'_>, dt_secs: f32, totals: &mut Totals) {
         let before = self.position();
-        self.take_pose(character);
+        self.take_pose(body);
         let down = self.is_down();
         totals.tick(before.distance(self.position()), down, down && !self.was_down);
         self.was_down = down;
@@ -164,35 +164,50 @@ impl SteeredCharacter {
         self.down_secs = if helpless { self.down_secs + dt_secs } else { 0.0 };
         self.shoved_secs = (self.shoved_secs - dt_secs).max(0.0);
         self.remember();
-        character.pose_into(&mut self.pose);
+        body.pose_into(&mut self.pose);
         totals.hash.absorb(&self.pose);
     }
 
     /// Updates poses after a tick whose physics diverged: the character is in its state before it, and so is the controller where
     /// a history is kept.
-    pub(super) fn observe_divergence(&mut self, character: &Character) {
+    pub(super) fn observe_divergence(&mut self, body: BodyRef<'_>) {
         self.load_saved(0);
-        self.take_pose(character);
+        self.take_pose(body);
         self.stand_still();
     }
 
-    /// Begins anew where the character was put.
-    pub(super) fn restart(&mut self, character: &Character) {
+    /// Begins anew after a shared world put it back. The past stays: it can be taken back to before.
+    pub(super) fn put_back(&mut self, body: BodyRef<'_>) {
         self.controller.reset();
         (self.down_secs, self.shoved_secs, self.was_down) = (0.0, 0.0, false);
         self.place = None;
+        self.remember();
+        self.take_pose(body);
+        self.stand_still();
+    }
+
+    /// Forgets the past, as its world does.
+    pub(super) fn forget_past(&mut self) {
         if let Some(history) = &mut self.history {
             history.clear();
         }
         self.remember();
-        self.take_pose(character);
+    }
+
+    /// Begins anew where the character was put.
+    pub(super) fn restart(&mut self, body: BodyRef<'_>) {
+        self.controller.reset();
+        (self.down_secs, self.shoved_secs, self.was_down) = (0.0, 0.0, false);
+        self.place = None;
+        self.forget_past();
+        self.take_pose(body);
         self.stand_still();
     }
 
     /// Goes back with the character, `age` ticks before the newest.
-    pub(super) fn rewind_to(&mut self, age: usize, character: &Character) {
+    pub(super) fn rewind_to(&mut self, age: usize, body: BodyRef<'_>) {
         self.load_saved(age);
-        self.take_pose(character);
+        self.take_pose(body);
         self.stand_still();
     }
 
@@ -239,8 +254,8 @@ impl SteeredCharacter {
         before.copy_from(now);
     }
 
-    fn take_pose(&mut self, character: &Character) {
-        character.sense_into(&mut self.state);
+    fn take_pose(&mut self, body: BodyRef<'_>) {
+        body.sense_into(&mut self.state);
         self.poses.swap(0, 1);
         take_poses(&self.state, &mut self.poses[1]);
     }

@@ -1,0 +1,60 @@
+//! The course of a shared world in the demo: its best time, and what is told of it.
+
+use std::path::PathBuf;
+
+use super::App;
+use crate::playground::{BestTime, CourseEvent};
+
+/// The best time over the course, and where it is kept.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Best {
+    time: Option<BestTime>,
+    /// `None` when it is not kept.
+    settings: Option<PathBuf>,
+    /// True once the file was read.
+    is_read: bool,
+}
+
+impl Best {
+    /// Kept beside a settings file.
+    #[must_use]
+    pub fn beside(settings: PathBuf) -> Self {
+        Self { settings: Some(settings), ..Self::default() }
+    }
+
+    /// The best time so far.
+    #[must_use]
+    pub fn time(&self) -> Option<BestTime> {
+        self.time
+    }
+}
+
+impl App {
+    /// Takes what happened in a shared world during a tick: a new best time is kept at once, and what diverged is told.
+    pub(super) fn follow_course(&mut self) {
+        let tick_secs = self.sim.tick_secs();
+        let Some(shared) = self.sim.shared_mut() else { return };
+        let (events, mishaps) = (shared.take_events(), shared.take_mishaps());
+        let run = BestTime { secs: shared.course().secs(tick_secs), falls: shared.course().falls() };
+        let scene = shared.scene().name.clone();
+        self.mishaps += mishaps.len();
+        if let Some(last) = mishaps.last() {
+            self.toasts.error(last.clone());
+        }
+        let file = self.best.settings.as_deref().map(|settings| BestTime::file_beside(settings, &scene));
+        if !std::mem::replace(&mut self.best.is_read, true)
+            && let Some(path) = &file
+        {
+            match BestTime::load(path) {
+                Ok(time) => self.best.time = time,
+                Err(error) => self.toasts.error(error.to_string()),
+            }
+        }
+        if events.contains(&CourseEvent::Finished) && run.beats(self.best.time) {
+            self.best.time = Some(run);
+            if let Some(Err(error)) = file.map(|path| run.save(&path)) {
+                self.toasts.error(error.to_string());
+            }
+        }
+    }
+}

@@ -1,0 +1,108 @@
+//! The playground: what stands in it, the course through it, and where its other characters wander. Plain data and
+//! pure functions of it; knows no physics engine, no drawing and no devices.
+
+mod best_time;
+mod course;
+mod file;
+mod layout;
+mod wander;
+
+use std::sync::Arc;
+
+use glam::{Quat, Vec2, Vec3};
+use physics_bridge::{Fixture, Joint, Prop};
+
+pub use best_time::{BestTime, BestTimeError};
+pub use course::{Course, CourseEvent, CourseState};
+pub use file::SceneFileError;
+pub use wander::{Wanderer, Wish};
+
+/// Colours of what stands in a scene.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Deserialize)]
+#[expect(missing_docs, reason = "the names say it all")]
+pub enum Paint {
+    Concrete,
+    Wood,
+    Steel,
+    Red,
+    Orange,
+    Yellow,
+    Green,
+    Blue,
+    Violet,
+}
+
+/// Something that never moves, and its colour. Its shape is a convex solid.
+#[derive(Clone, Debug, PartialEq)]
+pub struct PaintedFixture {
+    /// What it is to the physics.
+    pub fixture: Fixture,
+    /// Its colour.
+    pub paint: Paint,
+}
+
+/// Something that moves.
+#[derive(Clone, Debug, PartialEq)]
+pub struct PlacedProp {
+    /// Its name, unique in the scene.
+    pub name: String,
+    /// What it is to the physics.
+    pub prop: Prop,
+    /// Where its origin is at the start, metres, world space.
+    pub position: Vec3,
+    /// `world_from_prop` at the start.
+    pub rotation: Quat,
+    /// Its colour.
+    pub paint: Paint,
+    /// What holds it to the world.
+    pub joint: Option<Joint>,
+    /// It is driven to this height above its lowest point, metres: a pendulum that does not come to rest.
+    pub swing_m: Option<f32>,
+}
+
+/// Where a character starts.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Start {
+    /// Metres, world space.
+    pub at: Vec2,
+    /// Where it looks, radians from world x.
+    pub heading: f32,
+    /// The rectangle that it wanders in: least and greatest x and y, metres.
+    pub zone: [Vec2; 2],
+}
+
+/// A place that the course leads through.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Checkpoint {
+    /// Its middle on the ground, metres.
+    pub at: Vec2,
+    /// Metres.
+    pub radius: f32,
+}
+
+/// Everything that a scene begins with. Immutable.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Playground {
+    /// Name, for files and people.
+    pub name: String,
+    /// Least and greatest x and y of the whole, metres.
+    pub area: [Vec2; 2],
+    /// Where the characters start, the player first.
+    pub starts: Vec<Start>,
+    /// What never moves.
+    pub fixtures: Vec<PaintedFixture>,
+    /// What moves.
+    pub props: Vec<PlacedProp>,
+    /// The course: the first starts the clock, the last stops it.
+    pub checkpoints: Vec<Checkpoint>,
+}
+
+impl Playground {
+    /// The one inside the demo.
+    ///
+    /// # Errors
+    /// When its text is no scene.
+    pub fn shipped() -> Result<Arc<Self>, SceneFileError> {
+        Self::from_ron(crate::assets::PLAYGROUND).map(Arc::new)
+    }
+}
