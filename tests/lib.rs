@@ -12,8 +12,8 @@ use policy_core::CharacterPack;
 #[doc = include_str!("../README.md")]
 pub struct Readme;
 
-/// The character of this project.
-pub const HUMANOID_MJCF: &str = include_str!("../assets/humanoid.xml");
+/// The character of the golden recordings: the humanoid as it was then, whose legs pass through each other.
+pub const HUMANOID_MJCF: &str = include_str!("golden/humanoid.xml");
 
 /// A character that is no humanoid: a trunk, a head and four legs.
 pub const QUADRUPED_MJCF: &str = include_str!("assets/quadruped.xml");

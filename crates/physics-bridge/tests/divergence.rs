@@ -141,10 +141,12 @@ fn motion_that_no_body_makes_is_a_divergence() {
 /// A character that touches nothing falls through the ground.
 #[test]
 fn falling_through_the_ground_is_a_divergence() {
-    let solid = "contype=\"1\" conaffinity=\"0\"/>";
-    assert!(HUMANOID.contains(solid));
-    let ghost = Model::from_mjcf(&HUMANOID.replacen(solid, "contype=\"0\" conaffinity=\"0\"/>", 1)).unwrap();
-    let mut character = Character::new(&ghost);
+    let ghost = [(1, 0), (5, 2), (3, 4)].iter().fold(HUMANOID.to_owned(), |mjcf, (contype, conaffinity)| {
+        let solid = format!("contype=\"{contype}\" conaffinity=\"{conaffinity}\"");
+        assert!(mjcf.contains(&solid), "{solid}");
+        mjcf.replace(&solid, "contype=\"0\" conaffinity=\"0\"")
+    });
+    let mut character = Character::new(&Model::from_mjcf(&ghost).unwrap());
     let error = (0..60).find_map(|_| character.step().err()).expect("it falls through");
     assert_eq!(error.cause, Cause::BelowGround, "{error}");
     let excess = error.excess.unwrap();
