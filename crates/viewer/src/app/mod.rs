@@ -213,7 +213,7 @@ impl App {
         self.sim.overrides.blend = self.layers.blend();
         let divergences = self.sim.tick(&input, self.camera.heading());
         self.note_refusal();
-        self.follow_course();
+        self.follow_race();
         if self.sim.playback().is_some_and(Playback::has_restarted) {
             self.trail.clear();
         }

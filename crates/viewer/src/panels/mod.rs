@@ -2,7 +2,6 @@
 
 mod analysis;
 mod blend_mode;
-mod course;
 mod failure;
 mod graph;
 mod help;
@@ -12,6 +11,7 @@ mod pad;
 mod paths;
 mod physics;
 mod profiler;
+mod race;
 mod record;
 mod skills;
 mod view;
@@ -43,7 +43,7 @@ pub(crate) fn show(ui: &mut Ui, app: &App, commands: &mut Vec<ViewerCommand>) ->
     }
     let free = ui.available_rect_before_wrap();
     status(ui, app, free, commands);
-    course::show(ui, app, free);
+    race::show(ui, app, free);
     if app.help {
         help::show(ui, app, commands);
     }
