@@ -24,6 +24,9 @@ pub struct Lineage {
     /// Seed of the runs that name none.
     #[serde(default = "one")]
     pub seed: u64,
+    /// Kept checkpoints, by name, that steps start from.
+    #[serde(default)]
+    pub kept: Vec<String>,
     /// What to do, in this order.
     pub steps: Vec<Step>,
 }
@@ -165,10 +168,10 @@ impl Lineage {
         if lineage.steps.len() > MOST_STEPS {
             return Err(wrong(MOST_STEPS, "at most 1000 steps", lineage.steps.len().to_string()));
         }
-        let mut made = BTreeSet::new();
+        let mut made: BTreeSet<&str> = lineage.kept.iter().map(String::as_str).collect();
         for (index, step) in lineage.steps.iter().enumerate() {
             if let Some(name) = step.reads().into_iter().find(|name| !made.contains(name.as_str())) {
-                return Err(wrong(index, "a run that an earlier step makes", name.clone()));
+                return Err(wrong(index, "a run that an earlier step makes, or a kept one", name.clone()));
             }
             if !crate::recipe::is_plain(step.run()) {
                 return Err(wrong(

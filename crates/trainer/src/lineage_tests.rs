@@ -20,6 +20,10 @@ fn steps_read_what_earlier_steps_make() {
     assert!(said(&good.replace("continues", "from_samples = 5, continues")).contains("beside"));
     assert!(said("{ train = { recipe = \"../x\" } }").contains("lower-case"));
     assert!(said("{ train = { recipe = \"x\", samples = 0 } }").contains("at least one"));
+    let kept =
+        "kept = [\"old\"]\nsteps = [{ train = { recipe = \"walk\", from = \"old\", from_samples = 5 } }]";
+    assert!(Lineage::parse(Path::new("x.toml"), kept).is_ok());
+    assert!(said("{ train = { recipe = \"walk\", from = \"old\" } }").contains("a kept one"));
     assert!(said("{ dance = { } }").contains("dance"));
 }
 

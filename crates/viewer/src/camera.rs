@@ -1,36 +1,12 @@
-//! Cameras: follow, orbit and fixed. One rig for the window and for pictures.
+//! Cameras: orbit, follow, fixed, first person and free. One rig for the window and for pictures.
+
+mod mode;
 
 use glam::{Vec2, Vec3};
 use policy_core::Heading;
 
 use crate::render::View;
-
-/// How the camera moves.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
-pub enum CameraMode {
-    /// Keeps its direction and follows the character.
-    #[default]
-    Follow,
-    /// Swings round behind the character.
-    Chase,
-    /// Stays where it is and looks at the character.
-    Fixed,
-}
-
-impl CameraMode {
-    /// All modes.
-    pub const ALL: [CameraMode; 3] = [CameraMode::Follow, CameraMode::Chase, CameraMode::Fixed];
-
-    /// Name for panels.
-    #[must_use]
-    pub const fn name(self) -> &'static str {
-        match self {
-            CameraMode::Follow => "orbit",
-            CameraMode::Chase => "follow",
-            CameraMode::Fixed => "fixed",
-        }
-    }
-}
+pub use mode::CameraMode;
 
 /// A camera that looks at a character.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -45,8 +21,10 @@ pub struct Camera {
     pub distance: f32,
     /// What it looks at, smoothed.
     target: Vec3,
-    /// Where it stands, while fixed.
+    /// Where it stands, while fixed or free.
     eye: Vec3,
+    /// Eyes of the character, smoothed.
+    head: Vec3,
     /// Height of the character's root body, against that of a person.
     size: f32,
 }
@@ -63,6 +41,7 @@ impl Default for Camera {
             distance: 3.6,
             target: Vec3::new(0.0, 0.0, 0.85),
             eye: Vec3::ZERO,
+            head: Vec3::new(0.0, 0.0, 1.5),
             size: 1.0,
         };
         camera.eye = camera.orbit_eye(0.0);
@@ -72,8 +51,23 @@ impl Default for Camera {
 
 /// Seconds in which the camera makes up for two thirds of its lag.
 const LAG_SECS: f32 = 0.18;
+/// Seconds in which the first person makes up for two thirds of its lag: steps must not shake the picture.
+const HEAD_LAG_SECS: f32 = 0.06;
+/// The first person's eye is so far before the middle of the head, metres.
+const FACE_M: f32 = 0.17;
 /// Radians per second at full stick.
 const TURN_RATE: f32 = 2.4;
+/// Vertical field of view, radians; the first person sees more.
+const FOV: f32 = 0.62;
+const FIRST_PERSON_FOV: f32 = 1.1;
+/// Lowest eye, metres above the ground at height 0.
+const LEAST_HEIGHT_M: f32 = 0.15;
+/// Range of the pitch around a character, and of a camera that looks from where it is, radians.
+const PITCH_AROUND: [f32; 2] = [-0.15, 1.4];
+const PITCH_FROM: [f32; 2] = [-1.4, 1.4];
+/// Speed of the free camera, metres per second, and its way for one notch of the wheel that doubles the distance of others.
+const FLY_MPS: f32 = 4.0;
+const FLY_M: f32 = 2.5;
 
 impl Camera {
     /// Looks at a character whose root body stands `root_height` metres above the ground.
@@ -83,15 +77,64 @@ impl Camera {
         self.size = if (size - 1.0).abs() < 0.02 { 1.0 } else { size };
     }
 
-    /// Turns and tilts, radians; for a mouse.
-    pub fn turn(&mut self, by: Vec2) {
-        self.yaw -= by.x;
-        self.pitch = (self.pitch + by.y).clamp(-0.15, 1.4);
+    /// Moves in another way from now on. A free camera begins where the present one is.
+    pub fn set_mode(&mut self, mode: CameraMode) {
+        let view = self.view(0.0);
+        if !self.mode.circles() {
+            let along = (view.target - view.eye).normalize_or(Vec3::X);
+            (self.yaw, self.pitch) = (along.y.atan2(along.x), -along.z.asin());
+        }
+        self.eye = view.eye;
+        self.mode = mode;
+        self.turn(Vec2::ZERO);
     }
 
-    /// Moves closer (below 1) or away.
+    /// Behind a character that looks along `heading`, as at the start. The mode stays, but a camera that stands still
+    /// circles again.
+    pub fn reset(&mut self, heading: Heading) {
+        let start = Self::default();
+        if matches!(self.mode, CameraMode::Fixed | CameraMode::Free) {
+            self.mode = start.mode;
+        }
+        (self.yaw, self.pitch, self.distance) = (heading.angle(), start.pitch, start.distance);
+        self.eye = self.orbit_eye(0.0);
+    }
+
+    /// Turns and tilts, radians; for a mouse.
+    pub fn turn(&mut self, by: Vec2) {
+        let [lowest, highest] = match self.mode {
+            CameraMode::FirstPerson | CameraMode::Free => PITCH_FROM,
+            _ => PITCH_AROUND,
+        };
+        self.yaw -= by.x;
+        self.pitch = (self.pitch + by.y).clamp(lowest, highest);
+    }
+
+    /// Moves closer (below 1) or away; a free camera ahead or back.
     pub fn zoom(&mut self, factor: f32) {
-        self.distance = (self.distance * factor).clamp(1.0, 60.0);
+        if self.mode == CameraMode::Free {
+            let ahead = -factor.max(1e-3).log2() * FLY_M;
+            self.eye += self.along() * ahead;
+        } else {
+            self.distance = (self.distance * factor).clamp(1.0, 60.0);
+        }
+    }
+
+    /// Flies a free camera for `dt` seconds: ahead, to the right and up, each in [-1, 1].
+    pub fn fly(&mut self, dt: f32, [ahead, right, up]: [f32; 3]) {
+        if self.mode == CameraMode::Free {
+            let (sin, cos) = self.yaw.sin_cos();
+            let by = self.along() * ahead + Vec3::new(sin, -cos, 0.0) * right + Vec3::Z * up;
+            self.eye += by.clamp_length_max(1.0) * (FLY_MPS * dt);
+            self.eye.z = self.eye.z.max(LEAST_HEIGHT_M);
+        }
+    }
+
+    /// Takes `dt` seconds of the character's head at `head`, for the first person.
+    pub fn follow_head(&mut self, dt: f32, head: Vec3) {
+        if head.is_finite() {
+            self.head += (head - self.head) * (1.0 - (-dt / HEAD_LAG_SECS).exp());
+        }
     }
 
     /// Takes `dt` seconds of the right stick and of a root body at `root` that looks along `heading`, above ground of
@@ -108,7 +151,7 @@ impl Camera {
             let off = Heading::from_angle(heading.angle() - self.yaw).angle();
             self.yaw += off * (1.0 - (-dt / 0.9).exp());
         }
-        if self.mode != CameraMode::Fixed {
+        if self.mode.circles() {
             self.eye = self.orbit_eye(0.0);
         }
     }
@@ -130,15 +173,28 @@ impl Camera {
     /// The picture's view, turned by `around` radians about the character.
     #[must_use]
     pub fn view(&self, around: f32) -> View {
-        let eye = if self.mode == CameraMode::Fixed { self.eye } else { self.orbit_eye(around) };
-        View { eye, target: self.target, fov: 0.62 }
+        match self.mode {
+            CameraMode::Fixed => View { eye: self.eye, target: self.target, fov: FOV },
+            CameraMode::Free => View { eye: self.eye, target: self.eye + self.along(), fov: FOV },
+            CameraMode::FirstPerson => {
+                let eye = self.head + self.along() * FACE_M * self.size;
+                View { eye, target: eye + self.along(), fov: FIRST_PERSON_FOV }
+            }
+            _ => View { eye: self.orbit_eye(around), target: self.target, fov: FOV },
+        }
+    }
+
+    /// Direction in which it looks.
+    fn along(&self) -> Vec3 {
+        let (sin, cos) = self.yaw.sin_cos();
+        Vec3::new(cos * self.pitch.cos(), sin * self.pitch.cos(), -self.pitch.sin())
     }
 
     fn orbit_eye(&self, around: f32) -> Vec3 {
         let (sin, cos) = (self.yaw + around).sin_cos();
         let back = Vec3::new(-cos * self.pitch.cos(), -sin * self.pitch.cos(), self.pitch.sin());
         let mut eye = self.target + back * self.distance;
-        eye.z = eye.z.max(0.15);
+        eye.z = eye.z.max(LEAST_HEIGHT_M);
         eye
     }
 }
@@ -164,5 +220,55 @@ mod tests {
             camera.advance(1.0 / 60.0, [0.0; 2], Vec3::Z, Heading::from_angle(-2.0), 0.0);
         }
         assert!((camera.yaw + 2.0).abs() < 0.05, "{}", camera.yaw);
+    }
+
+    #[test]
+    fn the_first_person_sees_from_the_head_and_turns_on_the_spot() {
+        let mut camera = Camera::default();
+        camera.set_mode(CameraMode::FirstPerson);
+        camera.follow_head(10.0, Vec3::new(2.0, 0.0, 1.5));
+        let before = camera.view(0.0);
+        assert!(before.eye.distance(Vec3::new(2.0, 0.0, 1.5)) < 0.2);
+        camera.turn(Vec2::new(-1.0, -1.0));
+        let after = camera.view(0.0);
+        assert!((after.target - after.eye).z > 0.5, "it can look up");
+        assert!((camera.heading().angle() - 1.0).abs() < 1e-5);
+        camera.set_mode(CameraMode::Follow);
+        assert!(camera.pitch >= PITCH_AROUND[0], "an orbit can't look from below the ground");
+    }
+
+    #[test]
+    fn a_free_camera_begins_where_the_other_was_and_flies() {
+        for mode in CameraMode::ALL {
+            let mut camera = Camera { yaw: 0.7, ..Camera::default() };
+            camera.follow_head(10.0, Vec3::new(0.0, 0.0, 1.5));
+            camera.set_mode(mode);
+            camera.advance(0.1, [0.0; 2], Vec3::new(0.3, 0.0, 0.88), Heading::from_angle(2.0), 0.0);
+            let before = camera.view(0.0);
+            camera.set_mode(CameraMode::Free);
+            let after = camera.view(0.0);
+            let (a, b) = ((before.target - before.eye).normalize(), (after.target - after.eye).normalize());
+            assert!(before.eye.distance(after.eye) < 1e-4 && a.distance(b) < 1e-4, "{mode:?}: {a} {b}");
+            // The character leaves, the camera stays; then it flies ahead.
+            camera.advance(1.0, [0.0; 2], Vec3::new(50.0, 0.0, 0.88), Heading::FORWARD, 0.0);
+            assert_eq!(camera.view(0.0).eye, after.eye);
+            camera.fly(0.5, [1.0, 0.0, 0.0]);
+            let flown = camera.view(0.0).eye - after.eye;
+            assert!((flown.length() - 2.0).abs() < 0.1, "{mode:?}: {flown}");
+        }
+    }
+
+    #[test]
+    fn a_reset_looks_along_the_heading_of_the_character_again() {
+        for mode in CameraMode::ALL {
+            let mut camera = Camera { yaw: 1.0, pitch: 1.2, distance: 30.0, ..Camera::default() };
+            camera.set_mode(mode);
+            camera.reset(Heading::from_angle(-0.5));
+            camera.settle(Vec3::new(3.0, 4.0, 0.88), 0.0);
+            let view = camera.view(0.0);
+            let along = Heading::from_direction((view.target - view.eye).truncate());
+            assert!((along.angle() + 0.5).abs() < 1e-4, "{mode:?}");
+            assert!((camera.distance, camera.pitch) == (3.6, 0.22) && camera.mode != CameraMode::Free);
+        }
     }
 }

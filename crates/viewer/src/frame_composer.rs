@@ -5,7 +5,7 @@ use std::time::{Instant, SystemTime};
 
 use image::RgbaImage;
 
-use crate::app::{App, Record};
+use crate::app::{App, Quality, Record};
 use crate::dropped::word_about;
 use crate::gpu::{Gpu, GpuError};
 use crate::overlay::{Overlay, Prepared};
@@ -24,6 +24,7 @@ pub struct FrameComposer {
     gpu: Gpu,
     format: wgpu::TextureFormat,
     renderer: Renderer,
+    quality: Quality,
     overlay: Overlay,
     context: egui::Context,
     scene: Scene,
@@ -60,6 +61,7 @@ impl FrameComposer {
             gpu: gpu.clone(),
             format,
             renderer: Renderer::new(gpu, format, config, appearance),
+            quality: Quality::default(),
             overlay: Overlay::new(gpu, format),
             context,
             scene: Scene::default(),
@@ -90,18 +92,18 @@ impl FrameComposer {
     /// Opens a file that was dropped on the window, and says what came of it. What can't be opened changes nothing.
     fn open_dropped(&mut self, app: &mut App, path: &Path) {
         let name = path.display();
-        app.notice = Some(match app.open_dropped(path) {
+        match app.open_dropped(path) {
             Ok((what, appearance)) => {
                 app.has_mesh = appearance.mesh().is_some();
                 self.renderer.set_appearance(appearance);
                 let word = word_about(app.sim.pack()).filter(|_| what != "mesh");
-                format!(
+                app.toasts.note(format!(
                     "Opened the {what} {name}{}",
                     word.map_or_else(String::new, |word| format!(": {word}"))
-                )
+                ));
             }
-            Err(error) => error.to_string(),
-        });
+            Err(error) => app.toasts.error(error.to_string()),
+        }
     }
 
     /// Uploads what a frame that is not drawn has changed.
@@ -153,6 +155,13 @@ impl FrameComposer {
     }
 
     fn prepare(&mut self, app: &mut App, output: egui::FullOutput) -> Prepared {
+        let quality = app.layout.preferences.quality;
+        if quality != self.quality {
+            let config = quality.render_config(self.gpu.is_software);
+            let appearance = self.renderer.appearance().clone();
+            self.renderer = Renderer::new(&self.gpu, self.format, config, appearance);
+            (self.quality, app.ground_changed) = (quality, true);
+        }
         if app.ground_changed {
             let model = app.sim.model();
             let grid = ground_grid(model.height_field(), model.height_at(1e4, 1e4));
@@ -183,7 +192,10 @@ impl FrameComposer {
                 let path = name("png");
                 let saved = self.capture(size, Some(prepared)).map_err(|e| e.to_string());
                 let saved = saved.and_then(|p| recorder::save(&p, &path).map_err(|e| e.to_string()));
-                app.notice = Some(saved.map_or_else(|e| e, |()| format!("wrote {}", path.display())));
+                match saved {
+                    Ok(()) => app.toasts.note(format!("wrote {}", path.display())),
+                    Err(error) => app.toasts.error(error),
+                }
             }
             Some(Record::Sequence) => self.start(app, Kind::Sequence, size),
             Some(Record::Video) => self.start(app, Kind::film(), size),
@@ -205,11 +217,7 @@ impl FrameComposer {
 
     fn start(&mut self, app: &mut App, kind: Kind, size: [u32; 2]) {
         self.stop(app);
-        let path = match kind {
-            Kind::Sequence => name("frames"),
-            Kind::Mp4 => name("mp4"),
-            Kind::Apng => name("apng"),
-        };
+        let path = name(kind.extension());
         app.recording = Some(path.display().to_string());
         self.recorder = Some((Recorder::start(kind, path, size, FILM_FPS), Instant::now(), 0));
     }
@@ -227,13 +235,14 @@ impl FrameComposer {
     fn report_written(&mut self, app: &mut App) {
         for recorder in self.closing.extract_if(.., |recorder| recorder.is_finished()) {
             let path = recorder.path().display().to_string();
-            app.notice = Some(match recorder.finish() {
-                Ok(0) => format!("wrote {path}"),
-                Ok(dropped) => {
-                    format!("wrote {path} without {} that came too fast", counted(dropped as u64, "picture"))
-                }
-                Err(error) => error.to_string(),
-            });
+            match recorder.finish() {
+                Ok(0) => app.toasts.note(format!("wrote {path}")),
+                Ok(dropped) => app.toasts.error(format!(
+                    "wrote {path} without {} that came too fast",
+                    counted(dropped as u64, "picture")
+                )),
+                Err(error) => app.toasts.error(error.to_string()),
+            }
         }
     }
 

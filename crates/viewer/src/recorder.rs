@@ -64,6 +64,16 @@ pub enum Kind {
 }
 
 impl Kind {
+    /// How its file or folder is named at the end.
+    #[must_use]
+    pub const fn extension(self) -> &'static str {
+        match self {
+            Kind::Sequence => "frames",
+            Kind::Mp4 => "mp4",
+            Kind::Apng => "apng",
+        }
+    }
+
     /// MP4 where ffmpeg is there, else APNG.
     #[must_use]
     pub fn film() -> Self {

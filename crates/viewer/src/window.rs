@@ -80,7 +80,7 @@ impl Host {
         let (window, appearance) = open.close();
         (self.app.ground_changed, self.app.recording) = (true, None);
         self.window = Some(OpenWindow::on(window, appearance, &mut self.app)?);
-        self.app.notice = Some(format!("The device of {adapter} was lost and opened anew: {reason}"));
+        self.app.toasts.error(format!("The device of {adapter} was lost and opened anew: {reason}"));
         Ok(())
     }
 }
@@ -139,7 +139,7 @@ impl ApplicationHandler for Host {
             return events.exit();
         }
         if let Some(Err(error)) = self.layout.as_mut().map(|kept| kept.keep(&self.app.layout)) {
-            self.app.notice = Some(error.to_string());
+            self.app.toasts.error(error.to_string());
         }
         if let Some(open) = &self.window {
             open.window.request_redraw();
@@ -179,7 +179,7 @@ impl OpenWindow {
         surface.configure(&gpu.device, &configuration);
         app.adapter.clone_from(&gpu.adapter_name);
         if gpu.is_software {
-            app.notice = Some(format!("No graphics card was found: {} draws, slowly.", gpu.adapter_name));
+            app.toasts.note(format!("No graphics card was found: {} draws, slowly.", gpu.adapter_name));
         }
         let composer = FrameComposer::new(&gpu, configuration.format, appearance);
         let egui = egui_winit::State::new(

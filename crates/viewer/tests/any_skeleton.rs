@@ -120,8 +120,29 @@ fn a_dropped_pack_is_drawn_as_what_it_is() {
         let output = composer.panels(&mut app, egui::RawInput::default(), 0.7);
         composer.picture(&mut app, output, [160, 120], false).unwrap();
     }
-    assert!(app.notice.take().is_some_and(|said| said.contains("Opened the character pack")));
+    assert!(app.toasts.take_text().is_some_and(|said| said.contains("Opened the character pack")));
     assert!(!app.has_mesh && composer.appearance().mesh().is_none());
+}
+
+#[test]
+fn a_dropped_mesh_is_drawn_and_the_demo_says_so() {
+    let Some(gpu) = gpu() else { return };
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("own.glb");
+    std::fs::write(&path, HUMANOID_GLB).unwrap();
+    let mut app = App::new(simulation(), PanelLayout::default());
+    let bare = viewer::render::Appearance::new(app.sim.pack().skeleton(), None);
+    let mut composer = FrameComposer::new(&gpu, OffScreen::FORMAT, bare);
+    app.has_mesh = false;
+    app.dropped = Some(path);
+    let output = composer.panels(&mut app, egui::RawInput::default(), 0.7);
+    composer.picture(&mut app, output, [160, 120], false).unwrap();
+    assert!(
+        app.toasts
+            .take_text()
+            .is_some_and(|said| said.contains("Opened the mesh") && said.contains("own.glb"))
+    );
+    assert!(app.has_mesh && composer.appearance().mesh().is_some());
 }
 
 #[test]

@@ -88,6 +88,24 @@ fn a_trigger_takes_over_again_from_a_dragged_path() {
 }
 
 #[test]
+fn a_trigger_takes_over_again_from_the_sliders_of_the_layers() {
+    let mut app = app_with(PanelKind::Layers);
+    app.pad.state.left_trigger = 0.6;
+    app.apply(viewer::app::ViewerCommand::Layers(viewer::app::Layers {
+        active: true,
+        t: [0.5; 3],
+        ..app.layers.clone()
+    }));
+    app.tick();
+    assert!(app.layers.active, "a trigger held still keeps the sliders");
+    app.pad.state.left_trigger = 0.8;
+    app.tick();
+    assert!(!app.layers.active && app.layers.t == [0.5; 3], "the sliders stay where they were");
+    app.tick();
+    assert_eq!(app.sim.overrides.blend, None);
+}
+
+#[test]
 fn keys_walk_help_and_hide() {
     let mut harness = open(PanelKind::Record);
     harness.key_down(egui::Key::W);

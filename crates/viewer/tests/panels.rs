@@ -80,7 +80,9 @@ fn the_physics_panel_changes_the_engine_and_greys_what_it_lacks() {
     assert_eq!((harness.state().sim.engine(), ghost(&harness)), (Engine::Rapier, None));
     assert!(harness.get_by_role_and_label(Role::Button, "Step back").accesskit_node().is_disabled());
     harness.state_mut().apply(ViewerCommand::StepBack);
-    assert!(!harness.state().clock.paused && harness.state().notice.as_ref().unwrap().contains("Rapier"));
+    assert!(
+        !harness.state().clock.paused && harness.state_mut().toasts.take_text().unwrap().contains("Rapier")
+    );
     harness.get_by_role_and_label(Role::CheckBox, "Ghost in MuJoCo").click();
     harness.run_steps(2);
     harness.state_mut().tick();

@@ -5,7 +5,7 @@ mod common;
 use common::{gpu, simulation};
 use egui_kittest::{SnapshotOptions, try_image_snapshot_options};
 use image::RgbaImage;
-use viewer::app::{App, PanelKind, PanelLayout, Side};
+use viewer::app::{App, PanelKind, PanelLayout, Quality, Side};
 use viewer::frame_composer::FrameComposer;
 use viewer::render::{Appearance, OffScreen, RenderConfig, Renderer, SHADERS, Scene};
 use viewer::scene_setup::{Shown, Trail, ground_grid, set_scene};
@@ -97,11 +97,15 @@ fn panels_over_the_picture_look_as_they_did() {
     for (name, left, right) in groups {
         let on = |side| move |kind: &PanelKind| (*kind, side);
         let open = left.iter().map(on(Side::Left)).chain(right.iter().map(on(Side::Right)));
-        let app = App::new(simulation(), PanelLayout { open: open.collect(), ..PanelLayout::default() });
+        let app = App::new(simulation(), common::advanced(open.collect()));
         compare(&gpu, &draw_with_panels(&gpu, app), name, PANELS);
     }
-    let layout = PanelLayout { open: vec![(Analysis, Side::Left)], ..PanelLayout::default() };
-    let mut app = App::new(simulation(), layout);
+    let app = App::new(simulation(), PanelLayout::default());
+    compare(&gpu, &draw_with_panels(&gpu, app), "panels_simple", PANELS);
+    let mut app = App::new(simulation(), PanelLayout::default());
+    app.choosing = true;
+    compare(&gpu, &draw_with_panels(&gpu, app), "panels_settings", PANELS);
+    let mut app = App::new(simulation(), common::advanced(vec![(Analysis, Side::Left)]));
     app.analysis = viewer::analysis::Analysis::of(app.sim.pack());
     compare(&gpu, &draw_with_panels(&gpu, app), "panels_analysis", PANELS);
 }
@@ -117,6 +121,20 @@ fn draw_with_panels(gpu: &viewer::gpu::Gpu, mut app: App) -> RgbaImage {
     };
     frame(0.0);
     frame(1.0)
+}
+
+#[test]
+fn the_quality_changes_while_it_runs_and_keeps_the_ground() {
+    let Some(gpu) = gpu() else { return };
+    let mut app = App::new(simulation(), PanelLayout::default());
+    app.sim.rebuild(SimConfig { ground: GroundKind::Wavy, ..SimConfig::default() }).unwrap();
+    let mut composer = FrameComposer::new(&gpu, OffScreen::FORMAT, appearance(&app));
+    let [before, low, after] = [Quality::Automatic, Quality::Low, Quality::Automatic].map(|quality| {
+        app.layout.preferences.quality = quality;
+        let output = composer.panels(&mut app, egui::RawInput::default(), 0.7);
+        composer.picture(&mut app, output, SIZE, false).unwrap()
+    });
+    assert!(before == after && before != low);
 }
 
 #[test]

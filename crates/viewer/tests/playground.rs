@@ -41,7 +41,7 @@ fn shared(sim: &Simulation) -> &SharedWorld {
 fn run(sim: &mut Simulation, pad: &GamepadState, ticks: usize) {
     for _ in 0..ticks {
         assert!(sim.tick(pad, Heading::FORWARD).is_empty());
-        assert_eq!(sim.shared_mut().unwrap().take_mishaps(), [] as [String; 0]);
+        assert_eq!(sim.shared_mut().unwrap().take_put_right(), [] as [String; 0]);
     }
 }
 
@@ -210,11 +210,8 @@ fn what_diverges_is_put_right_and_the_rest_goes_on() {
         assert!(app.tick().is_empty(), "no failure stops the demo");
     }
     assert!(app.failure.is_none());
-    assert!(
-        app.mishaps >= 1 && app.notice.as_deref().is_some_and(|n| n.contains("diverged")),
-        "{:?}",
-        app.notice
-    );
+    let told = app.toasts.take_text().unwrap_or_default();
+    assert!(app.put_right >= 1 && told.contains("diverged"), "{told}");
     assert!(app.sim.characters()[1].state.root().position.is_finite());
     assert_eq!(app.sim.totals().stood_up, 1);
 }
@@ -243,22 +240,22 @@ fn what_the_playground_is_not_for_is_refused_and_changes_nothing() {
 fn scenes_change_while_the_demo_runs() {
     let mut app = App::new(common::simulation(), PanelLayout::default());
     app.apply(ViewerCommand::Throw { from: Vec3::Z, along: Vec3::X });
-    assert!(app.notice.take().is_some_and(|notice| notice.contains("playground")));
+    assert!(app.toasts.take_text().is_some_and(|notice| notice.contains("playground")));
     app.apply(ViewerCommand::Ground(GroundKind::Wavy));
     app.apply(ViewerCommand::Scene(SceneKind::Playground));
-    assert_eq!((app.notice.take(), app.sim.characters().len()), (None, 5));
+    assert_eq!((app.toasts.take_text(), app.sim.characters().len()), (None, 5));
     app.apply(ViewerCommand::Throw { from: Vec3::new(-3.0, 0.0, 1.5), along: Vec3::X });
     app.apply(ViewerCommand::Spawn { from: Vec3::new(-3.0, 0.0, 1.5), along: Vec3::new(1.0, 0.0, -0.5) });
     for _ in 0..20 {
         app.tick();
     }
-    assert_eq!((shared(&app.sim).balls(), app.notice.take()), (1, None));
+    assert_eq!((shared(&app.sim).balls(), app.toasts.take_text()), (1, None));
     app.apply(ViewerCommand::Reset);
     assert_eq!(shared(&app.sim).balls(), 0);
     app.apply(ViewerCommand::Ground(GroundKind::Wavy));
-    assert!(app.notice.take().is_some_and(|notice| notice.contains("flat ground")));
+    assert!(app.toasts.take_text().is_some_and(|notice| notice.contains("flat ground")));
     app.apply(ViewerCommand::Scene(SceneKind::Empty));
-    assert_eq!((app.notice.take(), app.sim.characters().len()), (None, 1));
+    assert_eq!((app.toasts.take_text(), app.sim.characters().len()), (None, 1));
     assert!(app.sim.shared().is_none());
 }
 
@@ -281,7 +278,7 @@ fn keys_throw_a_ball_at_the_mouse_and_put_a_prop_there() {
     harness.key_press(egui::Key::Y);
     harness.run_steps(2);
     assert_eq!(shared(&harness.state().sim).pieces().len(), pieces + 2);
-    assert_eq!(harness.state().notice, None);
+    assert!(harness.state().toasts.is_empty());
 }
 
 #[test]

@@ -151,13 +151,13 @@ fn a_clip_can_be_paused_but_not_steered() {
     sim.play(Playback::load(&path, sim.model()).unwrap());
     let mut app = App::new(sim, PanelLayout::default());
     app.apply(ViewerCommand::Ghost(Some(GhostKind::Mode(BlendMode::Switch))));
-    assert!(app.notice.take().is_some_and(|n| n.contains("A clip is shown")));
+    assert!(app.toasts.take_text().is_some_and(|n| n.contains("A clip is shown")));
     assert!(app.sim.ghost().is_none());
     app.apply(ViewerCommand::Characters(4));
-    assert_eq!((app.sim.characters().len(), app.notice.take().is_some()), (1, true));
+    assert_eq!((app.sim.characters().len(), app.toasts.take_text().is_some()), (1, true));
     app.apply(ViewerCommand::Pause(true));
     app.advance(0.2);
-    assert!(app.clock.paused && app.notice.is_none() && app.sim.ticks() == 0);
+    assert!(app.clock.paused && app.toasts.is_empty() && app.sim.ticks() == 0);
     app.apply(ViewerCommand::Step);
     app.advance(0.01);
     assert_eq!(app.sim.ticks(), 1);

@@ -157,4 +157,12 @@ fn all_that_diverge_in_a_tick_are_told_at_once_and_none_is_left_behind() {
         app.advance(0.05);
         assert_eq!(app.failure, None);
     }
+    for index in [3, 4] {
+        let mut pose = app.sim.character(index).pose();
+        pose.qvel[0] = 300.0;
+        app.sim.character_mut(index).set_pose(&pose.qpos, &pose.qvel).unwrap();
+    }
+    app.advance(0.1);
+    let what = app.failure.unwrap().what;
+    assert!(what.ends_with("(and 1 more character)"), "{what}");
 }

@@ -49,6 +49,13 @@ fn an_animation_holds_every_picture() {
 }
 
 #[test]
+fn an_animation_is_not_called_a_picture_and_recordings_stay_out_of_the_repository() {
+    assert_eq!([Kind::Sequence, Kind::Mp4, Kind::Apng].map(Kind::extension), ["frames", "mp4", "apng"]);
+    let ignored = include_str!("../../../.gitignore");
+    assert!(ignored.lines().any(|line| line == "/policy-space-recordings"), "{ignored}");
+}
+
+#[test]
 fn a_film_is_one_that_ffmpeg_reads() {
     if Kind::film() != Kind::Mp4 {
         eprintln!("skipped: ffmpeg is not installed");

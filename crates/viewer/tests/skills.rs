@@ -10,10 +10,10 @@ use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable as _;
 use physics::PhysicsCharacter as _;
 use policy_core::{SkillEnd, SkillId};
-use viewer::app::{App, PanelKind, PanelLayout, Side};
+use viewer::app::{App, PanelKind, Side};
 
 fn harness(threshold: f32) -> Harness<'static, App> {
-    let layout = PanelLayout { open: vec![(PanelKind::Skills, Side::Left)], ..PanelLayout::default() };
+    let layout = common::advanced(vec![(PanelKind::Skills, Side::Left)]);
     let app = App::new(simulation_of(Arc::new(pack_with_skills(threshold))), layout);
     let mut harness = Harness::builder()
         .with_size(egui::vec2(900.0, 700.0))

@@ -4,10 +4,12 @@
 mod common;
 
 use std::io::{BufRead as _, BufReader};
+use std::path::Path;
 use std::process::{Child, ChildStderr, Command, Stdio};
 use std::time::{Duration, Instant};
 
 use common::gpu;
+use viewer::app::PanelLayout;
 
 /// Ends its process when it goes out of scope.
 struct Running(Child);
@@ -88,27 +90,68 @@ const STRAIGHT_METRES: f32 = 1.5;
 /// A policy may stumble where frames come irregularly; it must not do so every time.
 const ATTEMPTS: usize = 12;
 
+/// Starts the demo in a window, with its settings in a folder.
+fn start_demo(display: &str, arguments: &[&str], settings: &Path) -> (Running, Trace) {
+    let mut demo = Command::new(env!("CARGO_BIN_EXE_policy-space"))
+        .args(["--no-pad", "--trace"])
+        .args(arguments)
+        .env("DISPLAY", display)
+        .env("XDG_CONFIG_HOME", settings)
+        .env_remove("WAYLAND_DISPLAY")
+        .stdout(Stdio::null())
+        .stderr(Stdio::piped())
+        .spawn()
+        .unwrap();
+    let trace = Trace(BufReader::new(demo.stderr.take().unwrap()));
+    (Running(demo), trace)
+}
+
+fn xdotool(display: &str, arguments: &[&str]) {
+    let sent = Command::new("xdotool").args(arguments).env("DISPLAY", display).status().unwrap();
+    assert!(sent.success(), "{arguments:?}");
+}
+
+#[test]
+fn settings_are_kept_at_once_and_outlive_a_kill() {
+    if !is_there("Xvfb") || !is_there("xdotool") || gpu().is_none() {
+        return;
+    }
+    let Some((_xvfb, display)) = display() else { return };
+    let folder = tempfile::tempdir().unwrap();
+    let (demo, mut trace) = start_demo(&display, &["--size", "640x480"], folder.path());
+    trace.next();
+    xdotool(&display, &["search", "--sync", "--name", "Policy Space", "windowfocus"]);
+    let path = folder.path().join("policy-space/layout.ron");
+    let kept = || PanelLayout::load(&path).unwrap();
+    assert_eq!(kept(), PanelLayout::default());
+    // The switch to the advanced panels, then the next camera.
+    xdotool(&display, &["mousemove", "190", "18", "click", "1"]);
+    let start = Instant::now();
+    while !kept().preferences.advanced {
+        trace.next();
+        assert!(start.elapsed() < Duration::from_secs(40), "the click changed nothing: {:?}", kept());
+    }
+    xdotool(&display, &["key", "c"]);
+    while kept().camera == PanelLayout::default().camera {
+        trace.next();
+        assert!(start.elapsed() < Duration::from_secs(80), "the key changed nothing: {:?}", kept());
+    }
+    let before = kept();
+    drop(demo);
+    let (_demo, mut trace) = start_demo(&display, &["--size", "640x480"], folder.path());
+    trace.next();
+    assert_eq!(kept(), before);
+}
+
 #[test]
 fn the_character_walks_where_the_keys_tell_it() {
     if !is_there("Xvfb") || !is_there("xdotool") || gpu().is_none() {
         return;
     }
     let Some((_xvfb, display)) = display() else { return };
-    let mut demo = Command::new(env!("CARGO_BIN_EXE_policy-space"))
-        .args(["--no-layout", "--no-pad", "--trace", "--size", "320x240"])
-        .env("DISPLAY", &display)
-        .env_remove("WAYLAND_DISPLAY")
-        .stdout(Stdio::null())
-        .stderr(Stdio::piped())
-        .spawn()
-        .unwrap();
-    let mut trace = Trace(BufReader::new(demo.stderr.take().unwrap()));
-    let _demo = Running(demo);
+    let (_demo, mut trace) = start_demo(&display, &["--no-layout", "--size", "320x240"], Path::new("."));
     let start = trace.next();
-    let keys = |arguments: &[&str]| {
-        let sent = Command::new("xdotool").args(arguments).env("DISPLAY", &display).status().unwrap();
-        assert!(sent.success(), "{arguments:?}");
-    };
+    let keys = |arguments: &[&str]| xdotool(&display, arguments);
     keys(&["search", "--sync", "--name", "Policy Space", "windowfocus"]);
     // Ahead is x, and the left of the screen is y.
     for (key, along, across) in [("w", 0, 1), ("a", 1, 0)] {

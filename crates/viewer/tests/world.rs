@@ -7,8 +7,11 @@ use image::{Rgba, RgbaImage};
 use physics::PhysicsCharacter as _;
 use physics_bridge::Settings;
 use policy_core::{BlendMode, Buttons, GamepadState, Heading};
+use viewer::app::{App, PanelLayout, ViewerCommand};
 use viewer::recorder::{Kind, Recorder};
-use viewer::sim::{Engine, GhostKind, GroundKind, LIE_SECS, SHOVE_BUTTON, SimConfig, SimError, Simulation};
+use viewer::sim::{
+    Engine, GhostKind, GroundKind, LEAST_FRICTION, LIE_SECS, SHOVE_BUTTON, SimConfig, SimError, Simulation,
+};
 
 const FORWARD: GamepadState = GamepadState {
     left_stick: [0.0, 1.0],
@@ -168,6 +171,58 @@ fn without_friction_it_slides_and_can_be_started_again() {
     run(&mut sim, 60);
     sim.rewind_to(30);
     run(&mut sim, 60);
+}
+
+#[test]
+fn on_ice_the_demo_goes_on_and_starts_again_after_a_failure() {
+    let mut app = App::new(simulation(), PanelLayout::default());
+    let settings = Settings { friction: 0.0, ..app.sim.model().settings() };
+    app.apply(ViewerCommand::Settings(settings));
+    assert_eq!(app.sim.model().settings().friction, LEAST_FRICTION);
+    app.pad.state = FORWARD;
+    app.pad.state.right_trigger = 1.0;
+    for again in [ViewerCommand::ResetAfterFailure, ViewerCommand::RewindAfterFailure] {
+        for tick in 0..300 {
+            app.pad.state.buttons.set(SHOVE_BUTTON, tick % 90 == 60);
+            assert!(app.tick().is_empty(), "it diverged in tick {tick}");
+        }
+        let torso = torso(&app.sim);
+        app.sim.character_mut(0).impulse(torso, glam::Vec3::Y * 9e5).unwrap();
+        app.advance(0.1);
+        assert!(app.failure.is_some());
+        app.apply(again);
+        for _ in 0..20 {
+            app.advance(0.05);
+            assert_eq!(app.failure, None);
+        }
+    }
+}
+
+#[test]
+fn a_crouch_without_the_stick_is_sent_back_to_its_place() {
+    let crouched = GamepadState { left_trigger: 0.5, left_stick: [0.0; 2], ..FORWARD };
+    let mut sim = simulation();
+    let put = |sim: &mut Simulation, x: f64| {
+        let mut pose = sim.character(0).pose();
+        pose.qpos[0] += x;
+        pose.qvel.fill(0.0);
+        sim.character_mut(0).set_pose(&pose.qpos, &pose.qvel).unwrap();
+        (0..2).for_each(|_| drop(sim.tick(&crouched, Heading::FORWARD)));
+    };
+    (0..150).for_each(|_| drop(sim.tick(&crouched, Heading::FORWARD)));
+    // At rest it has a place, if it had none before.
+    put(&mut sim, 0.0);
+    for away in [10.0, -20.0] {
+        put(&mut sim, away);
+        let here = sim.player().position();
+        let back = (sim.player().command.target.unwrap() - here).normalize();
+        assert!(back.x * (away as f32).signum() < -0.9, "from {here} along {back}");
+    }
+    // With the stick, or standing, there is no place to keep.
+    sim.tick(&FORWARD, Heading::FORWARD);
+    assert!(sim.player().command.target.unwrap().x > sim.player().position().x + 3.0);
+    sim.tick(&GamepadState { left_trigger: 0.0, ..crouched }, Heading::FORWARD);
+    assert_eq!(sim.player().command.target, None);
 }
 
 #[test]

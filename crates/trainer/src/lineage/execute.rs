@@ -67,11 +67,10 @@ impl Lineage {
             }
         }
         let read = |name: &String| -> Result<_> {
-            let folder = workspace.runs.join(name);
-            let loaded = newest_checkpoint(&folder)?;
-            let loaded =
-                loaded.with_context(|| format!("expected a run in {}, found none", folder.display()))?;
-            Ok((loaded.checkpoint, loaded.path))
+            workspace.newest(name)?.with_context(|| {
+                let [runs, kept] = [&workspace.runs, &workspace.kept].map(|folder| folder.display());
+                format!("expected a run or a kept checkpoint named {name}, found none in {runs} and {kept}")
+            })
         };
         let start = match (&step.from, &step.continues) {
             (Some(from), _) => {

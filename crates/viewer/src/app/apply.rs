@@ -6,7 +6,7 @@ use std::sync::Arc;
 use glam::Vec3;
 use policy_core::CharacterPack;
 
-use super::{App, Layers, ViewerCommand};
+use super::{App, FirstSteps, Layers, PanelLayout, ViewerCommand};
 use crate::appearance;
 use crate::dropped::{Dropped, DroppedError};
 use crate::render::Appearance;
@@ -43,10 +43,10 @@ fn needs_a_simulation(command: &ViewerCommand) -> bool {
 }
 
 impl App {
-    /// Does what a command says. What can't be done is said in [`App::notice`] and changes nothing.
+    /// Does what a command says. What can't be done is said in [`App::toasts`] and changes nothing.
     pub fn apply(&mut self, command: ViewerCommand) {
         if self.sim.playback().is_some() && needs_a_simulation(&command) {
-            self.notice = Some("A clip is shown: there is nothing to steer and no physics.".into());
+            self.toasts.error("A clip is shown: there is nothing to steer and no physics.");
             return;
         }
         match command {
@@ -54,7 +54,12 @@ impl App {
                 self.sim.overrides.goal = goal;
                 self.overridden_at = self.input();
             }
-            ViewerCommand::Layers(layers) => self.layers = layers,
+            ViewerCommand::Layers(layers) => {
+                if layers.active && !self.layers.active {
+                    self.overridden_at = self.input();
+                }
+                self.layers = layers;
+            }
             ViewerCommand::SavePreset(preset) => {
                 self.layout.presets.retain(|p| p.name != preset.name);
                 self.layout.presets.push(preset);
@@ -66,13 +71,20 @@ impl App {
             ViewerCommand::Mode(mode) => self.sim.set_blend_mode(mode),
             ViewerCommand::Ghost(Some(kind)) => {
                 if let Err(error) = self.sim.start_ghost(kind) {
-                    self.notice = Some(error.to_string());
+                    self.toasts.error(error.to_string());
                 }
             }
             ViewerCommand::Ghost(None) => self.sim.stop_ghost(),
             ViewerCommand::Skill(skill) => self.sim.overrides.skill = Some(skill),
-            ViewerCommand::Camera(mode) => (self.camera.mode, self.layout.camera) = (mode, mode),
-            ViewerCommand::Turn(by) => self.camera.turn(by),
+            ViewerCommand::Camera(mode) => {
+                self.camera.set_mode(mode);
+                self.layout.camera = mode;
+            }
+            ViewerCommand::ResetCamera => {
+                self.camera.reset(self.sim.player().heading());
+                self.layout.camera = self.camera.mode;
+            }
+            ViewerCommand::Turn(by) => self.camera.turn(self.layout.preferences.mouse(by)),
             ViewerCommand::Zoom(factor) => self.camera.zoom(factor),
             ViewerCommand::Shown(shown) => self.layout.shown = shown,
             ViewerCommand::TogglePanel(kind) => self.layout.toggle(kind),
@@ -80,7 +92,16 @@ impl App {
             ViewerCommand::HidePanels(hidden) => self.layout.hidden = hidden,
             ViewerCommand::Help(open) => self.help = open,
             ViewerCommand::Record(what) => self.record = Some(what),
-            ViewerCommand::DismissNotice => self.notice = None,
+            ViewerCommand::Complain(what) => self.toasts.error(what),
+            ViewerCommand::DismissToast(index) => self.toasts.dismiss(index),
+            ViewerCommand::Preferences(preferences) => self.layout.preferences = preferences.clamped(),
+            ViewerCommand::ChoosePreferences(open) => (self.choosing, self.rebinding) = (open, None),
+            ViewerCommand::Rebind(action) => self.rebinding = action,
+            ViewerCommand::ResetPreferences => self.reset_preferences(),
+            ViewerCommand::RepeatFirstSteps => {
+                self.first_steps = FirstSteps::default();
+                self.layout.preferences.shows_first_steps = true;
+            }
             ViewerCommand::AskToQuit(ask) => self.leaving = ask,
             ViewerCommand::Quit => self.quit = true,
             ViewerCommand::Grab(grab) => self.grab = grab,
@@ -104,7 +125,7 @@ impl App {
             ViewerCommand::Reset => self.restart(),
             ViewerCommand::Settings(settings) => {
                 if let Err(error) = self.sim.set_settings(settings) {
-                    self.notice = Some(error.to_string());
+                    self.toasts.error(error.to_string());
                 }
             }
             ViewerCommand::Engine(engine) => self.rebuild(SimConfig { engine, ..*self.sim.config() }),
@@ -133,10 +154,18 @@ impl App {
         }
     }
 
+    fn reset_preferences(&mut self) {
+        let presets = std::mem::take(&mut self.layout.presets);
+        self.layout = PanelLayout { presets, ..PanelLayout::default() };
+        self.camera.set_mode(self.layout.camera);
+        self.first_steps = FirstSteps::default();
+        self.toasts.note("All settings are as at the first start.");
+    }
+
     fn scrub(&mut self, age: usize) {
         let engine = self.sim.engine();
         if !engine.keeps_history() {
-            self.notice = Some(format!("{} keeps no history to go back to.", engine.title()));
+            self.toasts.error(format!("{} keeps no history to go back to.", engine.title()));
             return;
         }
         self.clock.paused = true;
@@ -162,19 +191,19 @@ impl App {
         let Some(shared) = self.sim.shared_mut() else { return self.nothing_to_throw() };
         // From in front of the eye, so that the ball does not fill the picture.
         if let Err(error) = shared.throw_at(from + along * BEFORE_EYE_M, along, THROWN_MPS) {
-            self.notice = Some(error.to_string());
+            self.toasts.error(error.to_string());
         }
     }
 
     fn spawn(&mut self, from: Vec3, along: Vec3) {
         let Some(shared) = self.sim.shared_mut() else { return self.nothing_to_throw() };
         if let Err(error) = shared.spawn_at(from, along) {
-            self.notice = Some(error.to_string());
+            self.toasts.error(error.to_string());
         }
     }
 
     fn nothing_to_throw(&mut self) {
-        self.notice = Some("Balls and props are in the playground: the empty floor has none.".into());
+        self.toasts.note("Balls and props are in the playground: the empty floor has none.");
     }
 
     fn restart(&mut self) {
@@ -192,7 +221,7 @@ impl App {
                 self.trail.clear();
                 (self.ground_changed, self.grab) = (true, None);
             }
-            Err(error) => self.notice = Some(error.to_string()),
+            Err(error) => self.toasts.error(error.to_string()),
         }
     }
 

@@ -34,12 +34,12 @@ impl App {
     pub(super) fn follow_race(&mut self) {
         let tick_secs = self.sim.tick_secs();
         let Some(shared) = self.sim.shared_mut() else { return };
-        let (events, mishaps) = (shared.take_events(), shared.take_mishaps());
+        let (events, put_right) = (shared.take_events(), shared.take_put_right());
         let run = BestTime { secs: shared.race().secs(tick_secs), falls: shared.race().falls() };
         let scene = shared.scene().name.clone();
-        self.mishaps += mishaps.len();
-        if let Some(last) = mishaps.last() {
-            self.notice = Some(last.clone());
+        self.put_right += put_right.len();
+        if let Some(last) = put_right.last() {
+            self.toasts.error(last.clone());
         }
         let file = self.best.settings.as_deref().map(|settings| BestTime::file_beside(settings, &scene));
         if !std::mem::replace(&mut self.best.is_read, true)
@@ -47,13 +47,13 @@ impl App {
         {
             match BestTime::load(path) {
                 Ok(time) => self.best.time = time,
-                Err(error) => self.notice = Some(error.to_string()),
+                Err(error) => self.toasts.error(error.to_string()),
             }
         }
         if events.contains(&RaceEvent::Finished) && run.beats(self.best.time) {
             self.best.time = Some(run);
             if let Some(Err(error)) = file.map(|path| run.save(&path)) {
-                self.notice = Some(error.to_string());
+                self.toasts.error(error.to_string());
             }
         }
     }

@@ -4,7 +4,7 @@ use glam::{Vec2, Vec3};
 use policy_core::contract::Settings;
 use policy_core::{BlendMode, Goal, SkillId};
 
-use super::{Grab, Layers, PanelKind, Preset};
+use super::{Grab, KeyAction, Layers, PanelKind, Preferences, Preset};
 use crate::camera::CameraMode;
 use crate::scene_setup::Shown;
 use crate::sim::{Engine, GhostKind, GroundKind, SceneKind};
@@ -80,7 +80,9 @@ pub enum ViewerCommand {
     },
     /// How the camera moves.
     Camera(CameraMode),
-    /// Turn the camera, radians.
+    /// The camera behind the character, as at the start.
+    ResetCamera,
+    /// Turn the camera, radians, before the player's sensitivity.
     Turn(Vec2),
     /// Camera closer (below 1) or away.
     Zoom(f32),
@@ -100,8 +102,20 @@ pub enum ViewerCommand {
     RewindAfterFailure,
     /// Continue after a failure, from the start.
     ResetAfterFailure,
-    /// A message was read.
-    DismissNotice,
+    /// Tell the user what was refused.
+    Complain(String),
+    /// A message was read: its place among those that are shown.
+    DismissToast(usize),
+    /// What the player has chosen once and for all.
+    Preferences(Preferences),
+    /// Open or close the window of the preferences.
+    ChoosePreferences(bool),
+    /// Give the next key that is pressed to an action; `None` gives up.
+    Rebind(Option<KeyAction>),
+    /// All preferences and panels as at the first start; presets stay.
+    ResetPreferences,
+    /// The first steps once more.
+    RepeatFirstSteps,
     /// Ask whether to leave, or no longer.
     AskToQuit(bool),
     /// Leave.

@@ -3,7 +3,7 @@
 use egui::{Key, Ui};
 use policy_core::{BlendMode, Button, Buttons, GamepadState};
 
-use super::{App, Record, ViewerCommand};
+use super::{App, KeyAction, KeyMap, Record, ViewerCommand};
 use crate::camera::CameraMode;
 use crate::sim::{GhostKind, SHOVE_BUTTON};
 
@@ -21,44 +21,21 @@ pub struct Keys {
     buttons: Buttons,
     stick: [f32; 2],
     triggers: [f32; 2],
+    flight: [f32; 3],
 }
 
-/// What keys do, for the help overlay.
-pub const KEYS: [(&str, &str); 20] = [
-    ("W A S D, arrows", "walk where the camera looks; with Shift half as fast"),
-    ("E", "hold: right trigger, the speed path; it returns slowly"),
-    ("Q", "hold: left trigger, the stance path"),
-    ("Z", "hold: right shoulder, the style path, where the pack has one"),
-    ("Space", "get up"),
-    ("R", "roll"),
-    ("J, K", "jump, kick, where the pack has them"),
-    ("V", "shove the character to the ground"),
-    ("right mouse, I O U L", "turn the camera; wheel: closer or away"),
-    ("left mouse on a body", "pull it; in the playground also a prop"),
-    ("T, Y", "in the playground: throw a ball at the mouse, put a prop there"),
-    ("C", "camera: orbit, follow, fixed"),
-    ("P, N, B", "pause, one tick, one tick back"),
-    ("minus, plus", "slower, faster"),
-    ("Backspace", "back to the start"),
-    ("M", "blend mode: parameters, actions, switch"),
-    ("G", "ghost under another mode"),
-    ("X", "collision shapes"),
-    ("F2, F3", "screenshot, film"),
-    ("Tab, F1, Esc", "hide panels, this help, leave (it asks first)"),
-];
-
-/// What pad controls do, for the help overlay.
-pub const PAD: [(&str, &str); 10] = [
-    ("left stick", "direction and speed"),
-    ("right stick", "camera"),
-    ("right trigger", "speed path: walk, jog, run"),
-    ("left trigger", "stance path: walk, crouch, crawl"),
-    ("A or cross", "get up"),
-    ("B or circle", "roll"),
-    ("Y or triangle, X or square", "jump, kick, where the pack has them"),
-    ("right shoulder", "hold: style path, where the pack has one"),
-    ("left shoulder", "shove the character to the ground"),
-    ("d-pad up, down", "in the playground: throw a ball, put a prop down"),
+/// Keys that turn and fly the camera.
+const CAMERA_KEYS: [Key; 10] = [
+    Key::I,
+    Key::O,
+    Key::U,
+    Key::L,
+    Key::ArrowUp,
+    Key::ArrowDown,
+    Key::ArrowLeft,
+    Key::ArrowRight,
+    Key::PageUp,
+    Key::PageDown,
 ];
 
 impl Keys {
@@ -72,6 +49,48 @@ impl Keys {
             right_trigger: self.triggers[1],
             buttons: self.buttons,
         }
+    }
+
+    /// Where a free camera is to fly: ahead, to the right and up, each in [-1, 1].
+    #[must_use]
+    pub fn flight(&self) -> [f32; 3] {
+        self.flight
+    }
+
+    /// Takes the keys that are held. The arrow keys walk, or fly a free camera.
+    fn hold(&mut self, input: &egui::InputState, map: &KeyMap, flies: bool) {
+        let down = |keys: &[Key]| f32::from(u8::from(keys.iter().any(|&key| input.key_down(key))));
+        let axis = |plus: &[Key], minus: &[Key]| down(plus) - down(minus);
+        let key = |action| map.key(action);
+        let arrows = [axis(&[Key::ArrowRight], &[Key::ArrowLeft]), axis(&[Key::ArrowUp], &[Key::ArrowDown])];
+        let mut stick = [
+            axis(&[key(KeyAction::Right)], &[key(KeyAction::Left)]),
+            axis(&[key(KeyAction::Ahead)], &[key(KeyAction::Back)]),
+        ];
+        self.flight = [0.0; 3];
+        if flies {
+            self.flight = [arrows[1], arrows[0], axis(&[Key::PageUp], &[Key::PageDown])];
+        } else {
+            stick = [stick[0] + arrows[0], stick[1] + arrows[1]];
+        }
+        let length = stick[0].hypot(stick[1]).max(1.0);
+        let push = if input.modifiers.shift { 0.5 } else { 1.0 };
+        self.wanted_stick = stick.map(|v| v / length * push);
+        self.wanted_right = [axis(&[Key::L], &[Key::U]), axis(&[Key::O], &[Key::I])].map(|v| 0.6 * v);
+        self.wanted_triggers = [down(&[key(KeyAction::Lower)]), down(&[key(KeyAction::Faster)])];
+        let held = [
+            (KeyAction::GetUp, Button::South),
+            (KeyAction::Roll, Button::East),
+            (KeyAction::Jump, Button::North),
+            (KeyAction::Kick, Button::West),
+            (KeyAction::Style, Button::RightShoulder),
+            (KeyAction::Shove, SHOVE_BUTTON),
+        ];
+        let mut buttons = Buttons::NONE;
+        for (action, button) in held {
+            buttons.set(button, input.key_down(key(action)));
+        }
+        self.buttons = buttons;
     }
 
     /// Sticks and triggers follow the keys for `dt` seconds.
@@ -104,34 +123,11 @@ pub(super) fn read(ui: &Ui, app: &mut App, commands: &mut Vec<ViewerCommand>) {
         app.keys = Keys { stick: app.keys.stick, triggers: app.keys.triggers, ..Keys::default() };
         return;
     }
+    if let Some(action) = app.rebinding {
+        return rebind(ui, app, action, commands);
+    }
     ui.input(|input| {
-        let axis = |plus: &[Key], minus: &[Key]| {
-            let down = |keys: &[Key]| f32::from(u8::from(keys.iter().any(|&k| input.key_down(k))));
-            down(plus) - down(minus)
-        };
-        let mut stick = [
-            axis(&[Key::D, Key::ArrowRight], &[Key::A, Key::ArrowLeft]),
-            axis(&[Key::W, Key::ArrowUp], &[Key::S, Key::ArrowDown]),
-        ];
-        let length = stick[0].hypot(stick[1]).max(1.0);
-        let push = if input.modifiers.shift { 0.5 } else { 1.0 };
-        stick = stick.map(|v| v / length * push);
-        app.keys.wanted_stick = stick;
-        app.keys.wanted_right = [axis(&[Key::L], &[Key::U]), axis(&[Key::O], &[Key::I])].map(|v| 0.6 * v);
-        app.keys.wanted_triggers = [axis(&[Key::Q], &[]), axis(&[Key::E], &[])];
-        let mut buttons = Buttons::NONE;
-        let held = [
-            (Key::Space, Button::South),
-            (Key::R, Button::East),
-            (Key::J, Button::North),
-            (Key::K, Button::West),
-            (Key::Z, Button::RightShoulder),
-            (Key::V, SHOVE_BUTTON),
-        ];
-        for (key, button) in held {
-            buttons.set(button, input.key_down(key));
-        }
-        app.keys.buttons = buttons;
+        app.keys.hold(input, &app.layout.preferences.keys, app.camera.mode == CameraMode::Free);
         for (key, command) in shortcuts(app) {
             // A text field or drop-down that was open takes this key for itself.
             let taken = key == Key::Escape && app.escape_taken;
@@ -143,6 +139,27 @@ pub(super) fn read(ui: &Ui, app: &mut App, commands: &mut Vec<ViewerCommand>) {
             commands.push(ViewerCommand::Quit);
         }
     });
+}
+
+/// Gives the key that is pressed to an action. Escape gives up; a key of the demo itself is refused.
+fn rebind(ui: &Ui, app: &App, action: KeyAction, commands: &mut Vec<ViewerCommand>) {
+    let pressed = ui.input(|input| {
+        input.events.iter().find_map(|event| match event {
+            egui::Event::Key { key, pressed: true, repeat: false, .. } => Some(*key),
+            _ => None,
+        })
+    });
+    let Some(key) = pressed else { return };
+    if key != Key::Escape {
+        if shortcuts(app).iter().any(|(taken, _)| *taken == key) || CAMERA_KEYS.contains(&key) {
+            commands.push(ViewerCommand::Complain(format!("The key {} has a use already.", key.name())));
+        } else {
+            let mut preferences = app.layout.preferences;
+            preferences.keys.bind(action, key);
+            commands.push(ViewerCommand::Preferences(preferences));
+        }
+    }
+    commands.push(ViewerCommand::Rebind(None));
 }
 
 /// Keys that act once.
@@ -168,6 +185,8 @@ fn shortcuts(app: &App) -> Vec<(Key, ViewerCommand)> {
         (Key::Plus, ViewerCommand::Speed(app.clock.speed * 2.0)),
         (Key::Equals, ViewerCommand::Speed(app.clock.speed * 2.0)),
         (Key::Backspace, ViewerCommand::Reset),
+        (Key::Home, ViewerCommand::ResetCamera),
+        (Key::F4, ViewerCommand::ChoosePreferences(!app.choosing)),
         (Key::C, ViewerCommand::Camera(next(&CameraMode::ALL, app.camera.mode))),
         (Key::M, ViewerCommand::Mode(next_mode)),
         (Key::G, ViewerCommand::Ghost(ghost)),
@@ -177,9 +196,10 @@ fn shortcuts(app: &App) -> Vec<(Key, ViewerCommand)> {
 
 /// Closes what is open; where nothing is, asks before leaving.
 fn escape(app: &App) -> ViewerCommand {
-    match (app.help, app.leaving) {
-        (true, _) => ViewerCommand::Help(false),
-        (_, leaving) => ViewerCommand::AskToQuit(!leaving),
+    match (app.help, app.choosing, app.leaving) {
+        (true, ..) => ViewerCommand::Help(false),
+        (_, true, _) => ViewerCommand::ChoosePreferences(false),
+        (.., leaving) => ViewerCommand::AskToQuit(!leaving),
     }
 }
 

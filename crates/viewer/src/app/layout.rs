@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use serde::{Deserialize, Serialize};
 
-use super::{PanelKind, Preset, Side};
+use super::{PanelKind, Preferences, Preset, Side};
 use crate::camera::CameraMode;
 use crate::files;
 use crate::scene_setup::Shown;
@@ -30,6 +30,9 @@ pub struct PanelLayout {
     pub camera: CameraMode,
     /// Blends per layer.
     pub presets: Vec<Preset>,
+    /// What the player has chosen once and for all.
+    #[serde(default)]
+    pub preferences: Preferences,
 }
 
 impl Default for PanelLayout {
@@ -47,6 +50,7 @@ impl Default for PanelLayout {
             shown: Shown::default(),
             camera: CameraMode::default(),
             presets: Vec::new(),
+            preferences: Preferences::default(),
         }
     }
 }
@@ -121,7 +125,8 @@ impl PanelLayout {
         if versioned.version != LAYOUT_VERSION {
             return Err(LayoutError::Version { path: path.to_owned(), found: versioned.version });
         }
-        ron::from_str(content).map_err(|e| text(e.to_string()))
+        let layout: Self = ron::from_str(content).map_err(|e| text(e.to_string()))?;
+        Ok(Self { preferences: layout.preferences.clamped(), ..layout })
     }
 
     /// Writes the layout, with its folder.
@@ -230,6 +235,19 @@ mod tests {
         layout.presets.push(Preset { name: "x".into(), from: "a".into(), to: "b".into(), t: [0.5; 3] });
         kept.keep(&layout).unwrap();
         assert_eq!(PanelLayout::load(&path).unwrap(), layout);
+    }
+
+    #[test]
+    fn a_layout_from_before_the_preferences_still_loads() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("layout.ron");
+        let old = "(version: 1, open: [(Graph, Right)], hidden: true, shown: (), camera: Chase, presets: [])";
+        std::fs::write(&path, old).unwrap();
+        let layout = PanelLayout::load(&path).unwrap();
+        assert_eq!((layout.camera, layout.preferences), (CameraMode::Chase, Preferences::default()));
+        std::fs::write(&path, old.replace("presets: []", "presets: [], preferences: (ui_scale: 1e9)"))
+            .unwrap();
+        assert_eq!(PanelLayout::load(&path).unwrap().preferences.ui_scale, 2.0);
     }
 
     #[test]

@@ -7,6 +7,9 @@ mod apply;
 mod best;
 mod clock;
 mod command;
+mod first_steps;
+mod key_help;
+mod key_map;
 mod keys;
 mod layers;
 mod layout;
@@ -14,7 +17,11 @@ mod panel_kind;
 mod pick;
 mod place;
 mod plots;
+mod preferences;
 mod requests;
+mod toasts;
+mod tour;
+mod user;
 
 use std::sync::mpsc::Receiver;
 
@@ -29,16 +36,23 @@ use crate::panels;
 use crate::render::Scene;
 use crate::scene_setup::{Trail, set_scene};
 use crate::sim::{Divergence, Held, Playback, Simulation};
+use crate::text::counted;
 pub use best::Best;
 pub use clock::Clock;
 pub use command::{Record, ViewerCommand};
-pub use keys::{KEYS, Keys, PAD};
+pub use first_steps::{Doing, FirstStep, FirstSteps};
+pub use key_help::{PAD, key_help};
+pub use key_map::{KeyAction, KeyMap};
+pub use keys::Keys;
 pub use layers::{Layers, Preset};
 pub use layout::{KeptLayout, LAYOUT_VERSION, LayoutError, PanelLayout};
 pub use panel_kind::{PanelKind, Side};
 pub use pick::Grab;
 pub use place::place;
 pub use plots::{Plots, Series};
+pub use preferences::{Preferences, Quality};
+pub use toasts::{Toast, ToastKind, Toasts};
+pub use tour::{IDLE_SECS, Tour};
 
 /// What is known of pads, filled in by the reader of the pads.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -89,12 +103,20 @@ pub struct App {
     pub analysis: Option<Analysis>,
     /// What stops the demo.
     pub failure: Option<Failure>,
-    /// The last message to the user.
-    pub notice: Option<String>,
+    /// Messages to the user.
+    pub toasts: Toasts,
+    /// What a newcomer has tried.
+    pub first_steps: FirstSteps,
+    /// Plays when nobody steers.
+    pub tour: Tour,
     /// The body under the mouse that is being pulled.
     pub grab: Option<Grab>,
     /// True while the help overlay is open.
     pub help: bool,
+    /// True while the window of the preferences is open.
+    pub choosing: bool,
+    /// The action that the next key is for.
+    pub rebinding: Option<KeyAction>,
     /// What the recorder is to do at the next frame; the frame composer takes it.
     pub record: Option<Record>,
     /// What is being recorded.
@@ -107,6 +129,8 @@ pub struct App {
     pub quit: bool,
     /// False when there is no mesh to draw: then collision shapes are drawn.
     pub has_mesh: bool,
+    /// The part of the window that no panel covered in the last frame, points.
+    pub free: egui::Rect,
     /// A text field or drop-down was open in the last frame: the Escape key closes that.
     escape_taken: bool,
     /// What was refused a moment ago, and for how many seconds it is still said.
@@ -118,7 +142,7 @@ pub struct App {
     /// The best time over the course of this scene.
     pub best: Best,
     /// What diverged in a shared world and was put right, so far.
-    pub mishaps: usize,
+    pub put_right: usize,
     /// A file that was dropped on the window; the frame composer opens it.
     pub dropped: Option<std::path::PathBuf>,
     analysis_soon: Option<Receiver<Analysis>>,
@@ -145,21 +169,26 @@ impl App {
             plots: Plots::default(),
             analysis: None,
             failure: None,
-            notice: None,
+            toasts: Toasts::default(),
+            first_steps: FirstSteps::default(),
+            tour: Tour::default(),
             grab: None,
             help: false,
+            choosing: false,
+            rebinding: None,
             record: None,
             recording: None,
             adapter: String::new(),
             leaving: false,
             quit: false,
             has_mesh: true,
+            free: egui::Rect::ZERO,
             escape_taken: false,
             refused: None,
             overridden_at: GamepadState::default(),
             ground_changed: true,
             best: Best::default(),
-            mishaps: 0,
+            put_right: 0,
             dropped: None,
             analysis_soon: None,
         }
@@ -170,15 +199,20 @@ impl App {
         self.analysis_soon = Some(Analysis::start(self.sim.pack().clone()));
     }
 
-    /// What steers: the pad, or the keyboard when the pad is at rest.
+    /// What steers: the tour while it plays, else the pad, or the keyboard when the pad is at rest.
     #[must_use]
     pub fn input(&self) -> GamepadState {
-        if self.pad.state == GamepadState::default() { self.keys.state() } else { self.pad.state }
+        match self.tour.pad() {
+            Some(pad) => pad,
+            None if self.pad.state == GamepadState::default() => self.keys.state(),
+            None => self.pad.state,
+        }
     }
 
     /// Lets `dt` seconds of the clock on the wall pass: physics in whole ticks, camera, gauges.
     pub fn advance(&mut self, dt: f32) {
         self.keys.advance(dt);
+        self.watch_user(dt);
         self.refused =
             self.refused.take().map(|(what, secs)| (what, secs - dt)).filter(|(_, secs)| *secs > 0.0);
         if let Some(analysis) = self.analysis_soon.as_ref().and_then(|soon| soon.try_recv().ok()) {
@@ -202,7 +236,10 @@ impl App {
         let player = self.sim.player();
         let root = self.sim.poses(0, alpha).positions[0];
         let (heading, ground) = (player.heading(), player.state.ground_height);
-        self.camera.advance(dt, input.right_stick, root, heading, ground);
+        let stick = self.layout.preferences.stick(input.right_stick);
+        self.camera.advance(dt, stick, root, heading, ground);
+        self.camera.follow_head(dt, self.head(alpha));
+        self.camera.fly(dt, self.keys.flight());
     }
 
     /// One tick of the world. Characters whose physics diverged are in their state before it.
@@ -212,6 +249,8 @@ impl App {
         self.give_back_to_triggers(&input);
         self.sim.overrides.blend = self.layers.blend();
         let divergences = self.sim.tick(&input, self.camera.heading());
+        self.tour.tick(self.sim.tick_secs());
+        self.observe_first_steps(&input);
         self.note_refusal();
         self.follow_race();
         if self.sim.playback().is_some_and(Playback::has_restarted) {
@@ -246,8 +285,11 @@ impl App {
     /// All panels, keys and the mouse: one frame of the user's doing. `around` as in [`App::set_scene`].
     pub fn ui(&mut self, ui: &mut Ui, around: f32) {
         let mut commands = Vec::new();
+        self.see_user(ui.ctx());
+        ui.ctx().set_zoom_factor(self.layout.preferences.ui_scale);
         keys::read(ui, self, &mut commands);
         let free = panels::show(ui, self, &mut commands);
+        self.free = free;
         pick::read(ui, self, free, around, &mut commands);
         for command in commands {
             self.apply(command);
@@ -262,7 +304,7 @@ impl App {
         let replay = saved.then(|| path.display().to_string());
         let mut what = format!("character {}: {}", first.character, first.what);
         if all.len() > 1 {
-            what += &format!(" (and {} more characters)", all.len() - 1);
+            what += &format!(" (and {})", counted(all.len() as u64 - 1, "more character"));
         }
         let characters = all.iter().map(|divergence| divergence.character).collect();
         self.failure = Some(Failure { what, replay, characters });

@@ -41,6 +41,24 @@ impl PanelKind {
         Self::ALL.into_iter().find(|kind| kind.title().eq_ignore_ascii_case(title))
     }
 
+    /// What it is for, in a sentence.
+    #[must_use]
+    pub const fn text(self) -> &'static str {
+        match self {
+            PanelKind::Paths => "How fast and how low it goes, as rulers",
+            PanelKind::Graph => "All policies, and which may be blended",
+            PanelKind::Layers => "Blend by hand, layer by layer",
+            PanelKind::BlendMode => "How blends become actions, and a ghost to compare",
+            PanelKind::Skills => "Roll, get up and the like, and when they end",
+            PanelKind::Pad => "What the gamepad reports",
+            PanelKind::Analysis => "Policies and states as clouds of points",
+            PanelKind::Physics => "Time, gravity, ground, engine, number of characters",
+            PanelKind::View => "Camera, and what is drawn besides the character",
+            PanelKind::Profiler => "Where the computing time goes",
+            PanelKind::Record => "Screenshots and films",
+        }
+    }
+
     /// Title.
     #[must_use]
     pub const fn title(self) -> &'static str {

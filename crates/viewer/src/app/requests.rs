@@ -38,6 +38,7 @@ impl App {
             || input.right_trigger > then.right_trigger + TRIGGER_MOVES;
         if pulled || input.buttons.pressed_since(then.buttons).contains(STYLE_BUTTON) {
             self.sim.overrides.goal = None;
+            self.layers.active = false;
         }
         then.buttons = input.buttons;
     }

@@ -101,7 +101,7 @@ impl<'a> Headless<'a> {
                 "expected a script or recording of at most {MOST_SECS} s, found {seconds} s; --seconds plays a part"
             );
         }
-        if let Some(complaint) = app.notice.take() {
+        if let Some(complaint) = app.toasts.take_text() {
             bail!("{complaint}");
         }
         if demo.panels.is_some() {
@@ -189,7 +189,7 @@ impl<'a> Headless<'a> {
             falls: totals.falls,
             after_a_fall,
             stood_up: totals.stood_up,
-            diverged: self.divergences + self.app.mishaps,
+            diverged: self.divergences + self.app.put_right,
             replays: self.replays,
             mean_speed_mps: distance_m / self.seconds.max(self.app.sim.tick_secs().into()),
             control_ticks_per_second: ticks / totals.whole.as_secs_f64().max(1e-9),

@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use super::{Demo, GhostChoice, load};
-use crate::app::{App, Best, PanelKind, PanelLayout, Side};
+use crate::app::{App, Best, PanelKind, PanelLayout, Side, Toasts};
 use crate::dropped::word_about;
 use crate::render::Appearance;
 use crate::sim::{GhostKind, Playback, SimConfig, Simulation};
@@ -19,23 +19,25 @@ pub struct Opened {
     pub layout: Option<PathBuf>,
 }
 
-/// Makes the demo. Of a mesh or layout that is no good [`App::notice`] says so, and the default is used.
+/// Makes the demo. Of a mesh or layout that is no good [`App::toasts`] says so, and the default is used.
 ///
 /// # Errors
 /// When the pack or the clip is no good, or the world can't be made.
 pub fn open(demo: &Demo) -> anyhow::Result<Opened> {
-    let mut notices = Vec::new();
+    let mut toasts = Toasts::default();
     // A clip needs other panels than the demo, whose layout it leaves alone.
     let clip = demo.poses.as_deref();
     let home = if demo.no_layout || demo.headless || clip.is_some() { None } else { PanelLayout::home() };
     let mut layout = match home.as_deref().map(PanelLayout::load) {
         Some(Ok(layout)) => layout,
         Some(Err(error)) => {
-            notices.push(error.to_string());
+            toasts.error(error.to_string());
             PanelLayout::default()
         }
         None => PanelLayout::default(),
     };
+    // A clip has nothing to steer, and who asks for panels gets them.
+    layout.preferences.advanced |= clip.is_some() || demo.panels.is_some();
     if clip.is_some() {
         layout.open =
             [PanelKind::Physics, PanelKind::View, PanelKind::Record].map(|kind| (kind, Side::Left)).into();
@@ -51,7 +53,7 @@ pub fn open(demo: &Demo) -> anyhow::Result<Opened> {
     if demo.headless {
         word.into_iter().for_each(super::remark);
     } else {
-        notices.extend(word.map(str::to_owned));
+        word.into_iter().for_each(|word| toasts.note(word));
     }
     let scene = demo.scene();
     let config = SimConfig {
@@ -66,7 +68,7 @@ pub fn open(demo: &Demo) -> anyhow::Result<Opened> {
     sim.set_blend_mode(demo.mode);
     sim.renews_controllers = demo.renew_controllers;
     let (appearance, complaint) = load::appearance(demo.mesh.as_deref(), sim.pack(), sim.model());
-    notices.extend(complaint);
+    complaint.into_iter().for_each(|complaint| toasts.error(complaint));
     if let Some(path) = clip {
         let playback = Playback::load(path, sim.model())?;
         sim.play(playback);
@@ -85,6 +87,6 @@ pub fn open(demo: &Demo) -> anyhow::Result<Opened> {
     if let Some(distance) = demo.distance {
         app.camera.distance = distance;
     }
-    app.notice = (!notices.is_empty()).then(|| notices.join("\n"));
+    app.toasts = toasts;
     Ok(Opened { app, appearance, layout: home })
 }

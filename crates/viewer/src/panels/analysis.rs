@@ -3,7 +3,7 @@
 use egui::{Align2, Color32, FontId, Painter, Pos2, Rect, Sense, Stroke, Ui, vec2};
 use glam::{Quat, Vec3};
 
-use super::{PRESENT, REQUESTED};
+use super::{PRESENT, REQUESTED, policy_colour};
 use crate::analysis::Analysis;
 use crate::app::App;
 
@@ -43,6 +43,7 @@ pub(super) fn show(ui: &mut Ui, app: &App) {
 /// A canvas that can be turned; the angles live with the widget.
 fn canvas(ui: &mut Ui, name: &str) -> Orbit {
     let (rect, response) = ui.allocate_exact_size(vec2(ui.available_width(), HEIGHT), Sense::drag());
+    let response = response.on_hover_text("Drag to turn it.");
     let id = ui.scope_id().with(name);
     let angles = ui.data_mut(|data| {
         let angles = data.get_temp_mut_or(id, vec2(0.6, 0.35));
@@ -60,14 +61,14 @@ fn canvas(ui: &mut Ui, name: &str) -> Orbit {
     orbit
 }
 
-fn colour(node: usize) -> Color32 {
-    egui::ecolor::Hsva::new((node as f32 * 0.381_966) % 1.0, 0.55, 0.9, 1.0).into()
-}
-
 fn states(painter: &Painter, orbit: &Orbit, analysis: &Analysis) {
     let painter = painter.with_clip_rect(orbit.rect);
     for point in &analysis.cloud {
-        painter.circle_filled(orbit.at(point.at), 1.3, colour(point.node.index()).gamma_multiply(0.55));
+        painter.circle_filled(
+            orbit.at(point.at),
+            1.3,
+            policy_colour(point.node.index()).gamma_multiply(0.55),
+        );
     }
     let trail: Vec<Pos2> = analysis.trail.iter().map(|p| orbit.at(*p)).collect();
     if let Some(last) = trail.last() {
@@ -86,7 +87,7 @@ fn parameters(ui: &Ui, orbit: &Orbit, app: &App, analysis: &Analysis) {
     }
     for (index, node) in graph.nodes().iter().enumerate() {
         let at = orbit.at(map.nodes[index]);
-        painter.circle_filled(at, 5.0, colour(index));
+        painter.circle_filled(at, 5.0, policy_colour(index));
         let text = ui.visuals().text_color();
         painter.text(
             at + vec2(0.0, -8.0),

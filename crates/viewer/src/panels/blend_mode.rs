@@ -32,13 +32,14 @@ pub(super) fn show(ui: &mut Ui, app: &App, commands: &mut Vec<ViewerCommand>) {
     ui.label("A ghost from the same state, under another mode:");
     ui.horizontal_wrapped(|ui| {
         let ghost = app.sim.ghost().map(|g| g.kind());
-        if ui.selectable_label(ghost.is_none(), "no ghost").clicked() {
+        let none = ui.selectable_label(ghost.is_none(), "no ghost");
+        if none.on_hover_text("One character alone").clicked() {
             commands.push(ViewerCommand::Ghost(None));
         }
         for mode in BlendMode::ALL {
             let label =
                 ui.selectable_label(ghost == Some(GhostKind::Mode(mode)), format!("ghost: {}", mode.name()));
-            if label.clicked() {
+            if label.on_hover_text("A second character beside yours, under this mode").clicked() {
                 commands.push(ViewerCommand::Ghost(Some(GhostKind::Mode(mode))));
             }
         }

@@ -13,10 +13,10 @@ pub(super) fn show(ui: &mut Ui, failure: &Failure, commands: &mut Vec<ViewerComm
             ui.label(format!("The state before it is in the replay file {replay}."));
         }
         ui.horizontal(|ui| {
-            if ui.button("Rewind and continue").clicked() {
+            if ui.button("Rewind and continue").on_hover_text("From two seconds before it").clicked() {
                 commands.push(ViewerCommand::RewindAfterFailure);
             }
-            if ui.button("Start again").clicked() {
+            if ui.button("Start again").on_hover_text("All characters back to the start").clicked() {
                 commands.push(ViewerCommand::ResetAfterFailure);
             }
         });

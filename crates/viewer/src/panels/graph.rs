@@ -43,6 +43,7 @@ pub(super) fn show(ui: &mut Ui, app: &App, commands: &mut Vec<ViewerCommand>) {
         let at = place(position.from).lerp(place(position.to), position.t);
         painter.circle(at, 5.0, PRESENT, Stroke::new(1.0, Color32::WHITE));
     }
+    let response = response.on_hover_text("Click a policy: the character goes there.");
     if let (true, Some(pointer)) = (response.clicked(), response.interact_pointer_pos()) {
         let near = |n: &NodeId| place(*n).distance(pointer);
         let nearest = (0..count).map(NodeId::new).min_by(|a, b| near(a).total_cmp(&near(b)));
@@ -59,7 +60,8 @@ fn walk_to(ui: &mut Ui, app: &App, commands: &mut Vec<ViewerCommand>) {
     ui.horizontal_wrapped(|ui| {
         ui.label("Go to");
         for (index, node) in graph.nodes().iter().enumerate() {
-            if ui.small_button(&node.name).clicked() {
+            let told = format!("Blend over to {}, whatever the triggers say", node.name);
+            if ui.small_button(&node.name).on_hover_text(told).clicked() {
                 commands.push(ViewerCommand::Goal(Some(Goal::Node(NodeId::new(index)))));
             }
         }

@@ -2,7 +2,7 @@
 
 use egui::Ui;
 
-use crate::app::{App, KEYS, PAD, ViewerCommand};
+use crate::app::{App, PAD, ViewerCommand, key_help};
 
 /// What the title and the frame of the window take, points, and the least that is left for the tables.
 const MARGIN: f32 = 90.0;
@@ -24,7 +24,7 @@ pub(super) fn show(ui: &mut Ui, app: &App, commands: &mut Vec<ViewerCommand>) {
 }
 
 fn tables(ui: &mut Ui, app: &App) {
-    table(ui, "Keyboard and mouse", &KEYS);
+    table(ui, "Keyboard and mouse", &key_help(&app.layout.preferences.keys));
     ui.add_space(8.0);
     table(ui, app.pad.name.as_deref().unwrap_or("Pad (none connected)"), &PAD);
     ui.add_space(8.0);
@@ -37,11 +37,11 @@ fn tables(ui: &mut Ui, app: &App) {
     }
 }
 
-fn table(ui: &mut Ui, title: &str, rows: &[(&str, &str)]) {
+fn table<T: AsRef<str>>(ui: &mut Ui, title: &str, rows: &[(T, &str)]) {
     ui.strong(title);
     egui::Grid::new(title).num_columns(2).striped(true).show(ui, |ui| {
         for (control, action) in rows {
-            ui.monospace(*control);
+            ui.monospace(control.as_ref());
             ui.label(*action);
             ui.end_row();
         }

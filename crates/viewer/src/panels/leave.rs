@@ -11,10 +11,10 @@ pub(super) fn show(ui: &mut Ui, app: &App, commands: &mut Vec<ViewerCommand>) {
             ui.label("The recording is finished first.");
         }
         ui.horizontal(|ui| {
-            if ui.button("Leave (Enter)").clicked() {
+            if ui.button("Leave (Enter)").on_hover_text("Ends the demo").clicked() {
                 commands.push(ViewerCommand::Quit);
             }
-            if ui.button("Stay (Esc)").clicked() {
+            if ui.button("Stay (Esc)").on_hover_text("Back to the demo").clicked() {
                 commands.push(ViewerCommand::AskToQuit(false));
             }
         });

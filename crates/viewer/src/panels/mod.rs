@@ -3,6 +3,7 @@
 mod analysis;
 mod blend_mode;
 mod failure;
+mod first_steps;
 mod graph;
 mod help;
 mod layers;
@@ -10,16 +11,18 @@ mod leave;
 mod pad;
 mod paths;
 mod physics;
+mod preferences;
 mod profiler;
 mod race;
 mod record;
+mod simple;
 mod skills;
+mod toasts;
 mod view;
 
 use egui::{Color32, Frame, Margin, Rect, Ui};
 
-use crate::app::{self, App, PanelKind, Side, ViewerCommand};
-use crate::text;
+use crate::app::{self, App, PanelKind, Preferences, Side, ViewerCommand};
 
 /// Colour of what is asked for.
 pub(crate) const REQUESTED: Color32 = Color32::from_rgb(0xe8, 0x8a, 0x3c);
@@ -32,20 +35,31 @@ pub(crate) const WRONG: Color32 = Color32::from_rgb(0xe0, 0x5a, 0x4e);
 const SIDE_WIDTH: f32 = 290.0;
 /// Least width of the picture beside them, points.
 const LEAST_VIEW: f32 = 300.0;
-/// Longest message to the user, characters.
-const LONGEST_NOTICE: usize = 500;
 
 /// Draws everything; returns the part of the window that no panel covers.
 pub(crate) fn show(ui: &mut Ui, app: &App, commands: &mut Vec<ViewerCommand>) -> Rect {
+    let is_simple = !app.layout.preferences.advanced;
     if !app.layout.hidden {
         bar(ui, app, commands);
-        columns(ui, app, commands);
+        if is_simple {
+            simple::show(ui, app);
+        } else {
+            columns(ui, app, commands);
+        }
     }
     let free = ui.available_rect_before_wrap();
-    status(ui, app, free, commands);
+    if app.layout.hidden || !is_simple {
+        status(ui, app, free);
+    } else {
+        first_steps::show(ui, app, free, commands);
+    }
     race::show(ui, app, free);
+    toasts::show(ui, app, free, commands);
     if app.help {
         help::show(ui, app, commands);
+    }
+    if app.choosing {
+        preferences::show(ui, app, commands);
     }
     if app.leaving {
         leave::show(ui, app, commands);
@@ -56,23 +70,40 @@ pub(crate) fn show(ui: &mut Ui, app: &App, commands: &mut Vec<ViewerCommand>) ->
     free
 }
 
+/// Colour of a policy, wherever it is drawn.
+fn policy_colour(policy: usize) -> Color32 {
+    egui::ecolor::Hsva::new((policy as f32 * 0.381_966) % 1.0, 0.55, 0.9, 1.0).into()
+}
+
 fn frame() -> Frame {
     Frame::new().fill(Color32::from_rgba_unmultiplied(22, 25, 30, 225)).inner_margin(Margin::same(8))
 }
 
-/// The bar on top: one switch for each panel.
+/// The bar on top: one switch for each panel of the advanced layout, then what every player needs.
 fn bar(ui: &mut Ui, app: &App, commands: &mut Vec<ViewerCommand>) {
+    let preferences = app.layout.preferences;
     egui::Panel::top("bar").frame(frame()).show(ui, |ui| {
         ui.horizontal_wrapped(|ui| {
-            for kind in PanelKind::ALL {
-                let open = app.layout.side_of(kind).is_some();
-                if ui.selectable_label(open, kind.title()).clicked() {
-                    commands.push(ViewerCommand::TogglePanel(kind));
+            if preferences.advanced {
+                for kind in PanelKind::ALL {
+                    let open = app.layout.side_of(kind).is_some();
+                    if ui.selectable_label(open, kind.title()).on_hover_text(kind.text()).clicked() {
+                        commands.push(ViewerCommand::TogglePanel(kind));
+                    }
                 }
+                ui.separator();
             }
-            ui.separator();
-            if ui.button("Help (F1)").clicked() {
+            if ui.button("Help (F1)").on_hover_text("What every key and button does").clicked() {
                 commands.push(ViewerCommand::Help(!app.help));
+            }
+            let told = "Camera, sensitivity, size of texts, quality, keys";
+            if ui.button("Settings (F4)").on_hover_text(told).clicked() {
+                commands.push(ViewerCommand::ChoosePreferences(!app.choosing));
+            }
+            let mut advanced = preferences.advanced;
+            let told = "Panels that show how the method works, for the curious";
+            if ui.checkbox(&mut advanced, "Advanced").on_hover_text(told).changed() {
+                commands.push(ViewerCommand::Preferences(Preferences { advanced, ..preferences }));
             }
         });
     });
@@ -144,8 +175,8 @@ fn titled(ui: &mut Ui, app: &App, kind: PanelKind, commands: &mut Vec<ViewerComm
     ui.separator();
 }
 
-/// One line at the foot of the picture: what the character does, and messages.
-fn status(ui: &mut Ui, app: &App, free: Rect, commands: &mut Vec<ViewerCommand>) {
+/// One line at the foot of the picture: what the character does.
+fn status(ui: &Ui, app: &App, free: Rect) {
     let player = app.sim.player();
     let skill = player.report().skill.map(|s| app.sim.pack().skills()[s.skill.index()].name.as_str());
     let state = if app.clock.paused { "  paused" } else { "" };
@@ -164,17 +195,4 @@ fn status(ui: &mut Ui, app: &App, free: Rect, commands: &mut Vec<ViewerCommand>)
     let shade = Color32::from_black_alpha(140);
     painter.text(at + egui::vec2(1.0, 1.0), egui::Align2::LEFT_BOTTOM, &text, font.clone(), shade);
     painter.text(at, egui::Align2::LEFT_BOTTOM, &text, font, Color32::WHITE);
-    if let Some(notice) = &app.notice {
-        let area =
-            egui::Area::new(egui::Id::unique("notice")).fixed_pos(free.left_top() + egui::vec2(12.0, 12.0));
-        area.show(ui.ctx(), |ui| {
-            frame().show(ui, |ui| {
-                ui.set_max_width(460.0);
-                ui.colored_label(REQUESTED, text::printable(notice, LONGEST_NOTICE));
-                if ui.button("Dismiss").clicked() {
-                    commands.push(ViewerCommand::DismissNotice);
-                }
-            });
-        });
-    }
 }

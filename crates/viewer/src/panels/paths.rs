@@ -25,7 +25,9 @@ pub(super) fn show(ui: &mut Ui, app: &App, commands: &mut Vec<ViewerCommand>) {
     ui.horizontal(|ui| {
         ui.colored_label(REQUESTED, "asked for");
         ui.colored_label(PRESENT, "now");
-        if ui.add_enabled(overridden, egui::Button::new("Back to the triggers")).clicked() {
+        let back = ui.add_enabled(overridden, egui::Button::new("Back to the triggers"));
+        let told = "The triggers say again where to go. Pulling one does the same.";
+        if back.on_hover_text(told).on_disabled_hover_text(told).clicked() {
             commands.push(ViewerCommand::Goal(None));
         }
     });
@@ -63,6 +65,7 @@ fn ruler(ui: &mut Ui, app: &App, (id, path): (PathId, &Path), commands: &mut Vec
     if let Some(c) = path.coordinate(goal) {
         cursor(ui, place(c));
     }
+    let response = response.on_hover_text("Drag along it, or click a name.");
     let Some(pointer) = response.interact_pointer_pos() else { return };
     let coordinate = ((pointer.x - line.left()) / line.width()).clamp(0.0, 1.0) * path.end();
     let node = coordinate.round();

@@ -17,6 +17,7 @@ pub(super) fn show(ui: &mut Ui, app: &App, commands: &mut Vec<ViewerCommand>) {
             ui.label("Ground");
             for ground in GroundKind::ALL {
                 let label = ui.selectable_label(app.sim.config().ground == ground, ground.name());
+                let label = label.on_hover_text("Another ground; the characters begin anew on it.");
                 if label.on_disabled_hover_text(ONLY_EMPTY).clicked() {
                     commands.push(ViewerCommand::Ground(ground));
                 }
@@ -29,6 +30,7 @@ pub(super) fn show(ui: &mut Ui, app: &App, commands: &mut Vec<ViewerCommand>) {
     let slider = Slider::new(&mut characters, 1..=most).logarithmic(on_empty_floor).text(label);
     // A crowd is made anew for every number, so only where the drag ends.
     let response = ui.add(slider.update_while_editing(false));
+    let response = response.on_hover_text("How many characters there are. All do what you ask.");
     if response.changed() {
         commands.push(ViewerCommand::Characters(characters));
     }
@@ -79,17 +81,18 @@ fn time(ui: &mut Ui, app: &App, commands: &mut Vec<ViewerCommand>) {
     let no_history = format!("{} keeps no history to go back to.", engine.title());
     ui.horizontal(|ui| {
         let (label, pause) = if app.clock.paused { ("Play", false) } else { ("Pause", true) };
-        if ui.button(label).clicked() {
+        if ui.button(label).on_hover_text("Stops time, or lets it go on (P)").clicked() {
             commands.push(ViewerCommand::Pause(pause));
         }
         let back = ui.add_enabled(engine.keeps_history(), egui::Button::new("Step back"));
+        let back = back.on_hover_text("One tick back (B)");
         if back.on_disabled_hover_text(&no_history).clicked() {
             commands.push(ViewerCommand::StepBack);
         }
-        if ui.button("Step").clicked() {
+        if ui.button("Step").on_hover_text("One tick ahead (N)").clicked() {
             commands.push(ViewerCommand::Step);
         }
-        if ui.button("Reset").clicked() {
+        if ui.button("Reset").on_hover_text("All characters back to the start (Backspace)").clicked() {
             commands.push(ViewerCommand::Reset);
         }
     });
@@ -97,8 +100,12 @@ fn time(ui: &mut Ui, app: &App, commands: &mut Vec<ViewerCommand>) {
     let tick_secs = app.sim.tick_secs();
     let mut ago = 0.0 - age as f32 * tick_secs;
     let reach = (kept as f32 * tick_secs).max(tick_secs);
-    let slider = Slider::new(&mut ago, -reach..=0.0).text("seconds ago").fixed_decimals(2);
-    let moved = ui.add_enabled(engine.keeps_history(), slider).on_disabled_hover_text(&no_history).changed();
+    let slider = Slider::new(&mut ago, -reach..=0.0).text("ago").suffix(" s").fixed_decimals(2);
+    let moved = ui
+        .add_enabled(engine.keeps_history(), slider)
+        .on_hover_text("Goes back through the last seconds")
+        .on_disabled_hover_text(&no_history)
+        .changed();
     let wanted = ((-ago / tick_secs).round() as usize).min(kept);
     // The slider rounds to what it shows: that alone is no wish to go back.
     if moved && wanted != age {
@@ -107,11 +114,11 @@ fn time(ui: &mut Ui, app: &App, commands: &mut Vec<ViewerCommand>) {
     let mut step = Clock::SPEEDS.iter().position(|s| *s >= app.clock.speed * 0.99).unwrap_or(0);
     let last = Clock::SPEEDS.len() - 1;
     let name = |index: f64| match Clock::SPEEDS[(index as usize).min(last)] {
-        speed if speed < 1.0 => format!("1/{}", (1.0 / speed).round()),
-        speed => format!("{speed}"),
+        speed if speed < 1.0 => format!("1/{} ×", (1.0 / speed).round()),
+        speed => format!("{speed} ×"),
     };
     let slider = Slider::new(&mut step, 0..=last).text("speed").custom_formatter(move |n, _| name(n));
-    if ui.add(slider).changed() {
+    if ui.add(slider).on_hover_text("How fast time runs, against real time").changed() {
         commands.push(ViewerCommand::Speed(Clock::SPEEDS[step.min(last)]));
     }
 }
@@ -119,11 +126,20 @@ fn time(ui: &mut Ui, app: &App, commands: &mut Vec<ViewerCommand>) {
 fn matter(ui: &mut Ui, app: &App, commands: &mut Vec<ViewerCommand>) {
     let mut settings = app.sim.model().settings();
     let before = settings;
-    ui.add(Slider::new(&mut settings.gravity, 0.0..=3.0).text("gravity"));
-    ui.add(Slider::new(&mut settings.friction, LEAST_FRICTION..=3.0).text("friction"));
-    ui.add(Slider::new(&mut settings.strength, 0.0..=3.0).text("strength"));
-    let mass = Slider::new(&mut settings.mass, 0.2..=3.0).text("mass");
-    ui.add_enabled(app.sim.shared().is_none(), mass).on_disabled_hover_text(NO_MASS);
+    let mut factor = |value, range, (unit, name, told): (&str, &str, &str)| {
+        ui.add(Slider::new(value, range).suffix(unit).text(name)).on_hover_text(told);
+    };
+    factor(&mut settings.gravity, 0.0..=3.0, (" g", "gravity", "1 g is that of the Earth"));
+    let told = "Of the ground, against that of the training";
+    factor(&mut settings.friction, LEAST_FRICTION..=3.0, (" ×", "friction", told));
+    factor(
+        &mut settings.strength,
+        0.0..=3.0,
+        (" ×", "strength", "Of all joints, against the character's own"),
+    );
+    let mass = Slider::new(&mut settings.mass, 0.2..=3.0).suffix(" ×").text("mass");
+    let mass = ui.add_enabled(app.sim.shared().is_none(), mass);
+    mass.on_hover_text("Of all bodies, against the character's own").on_disabled_hover_text(NO_MASS);
     if settings != before {
         commands.push(ViewerCommand::Settings(settings));
     }

@@ -19,7 +19,8 @@ pub(super) fn show(ui: &mut Ui, app: &App, commands: &mut Vec<ViewerCommand>) {
             let running = report.skill.is_some_and(|s| s.skill == id);
             let waiting = report.pending_skill == Some(id);
             let mark = if waiting { " ..." } else { "" };
-            if ui.add(egui::Button::selectable(running, format!("{}{mark}", skill.name))).clicked() {
+            let button = ui.add(egui::Button::selectable(running, format!("{}{mark}", skill.name)));
+            if button.on_hover_text("Starts as soon as the character can; ends by itself.").clicked() {
                 commands.push(ViewerCommand::Skill(id));
             }
         }

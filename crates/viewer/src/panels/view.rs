@@ -2,27 +2,23 @@
 
 use egui::Ui;
 
+use super::preferences;
 use crate::app::{App, ViewerCommand};
-use crate::camera::CameraMode;
 
 pub(super) fn show(ui: &mut Ui, app: &App, commands: &mut Vec<ViewerCommand>) {
-    ui.horizontal(|ui| {
-        ui.label("Camera");
-        for mode in CameraMode::ALL {
-            if ui.selectable_label(app.camera.mode == mode, mode.name()).clicked() {
-                commands.push(ViewerCommand::Camera(mode));
-            }
-        }
-    });
+    preferences::camera_modes(ui, app, commands);
     let mut shown = app.layout.shown;
-    ui.checkbox(&mut shown.collision_shapes, "Collision shapes");
-    ui.checkbox(&mut shown.target, "Target");
-    ui.checkbox(&mut shown.trail, "Trail");
+    ui.checkbox(&mut shown.collision_shapes, "Collision shapes")
+        .on_hover_text("The solids that the physics sees, instead of the mesh");
+    ui.checkbox(&mut shown.target, "Target").on_hover_text("The point that the stick asks for");
+    ui.checkbox(&mut shown.trail, "Trail").on_hover_text("The way walked");
     let engine = app.sim.engine();
     let forces = egui::Checkbox::new(&mut shown.contact_forces, "Contact forces");
     ui.add_enabled(engine.tells_contacts(), forces)
+        .on_hover_text("How hard feet and hands touch the ground")
         .on_disabled_hover_text(format!("Not read from {}.", engine.title()));
-    ui.checkbox(&mut shown.centre_of_mass, "Centre of mass");
+    ui.checkbox(&mut shown.centre_of_mass, "Centre of mass")
+        .on_hover_text("The centre of mass, and the point below it");
     if shown != app.layout.shown {
         commands.push(ViewerCommand::Shown(shown));
     }

@@ -1,6 +1,7 @@
 //! The last seconds of a controller, kept beside those of its character's physics, so that both go back together and
 //! continue bit for bit.
 
+use glam::Vec2;
 use physics_bridge::HISTORY_SECS;
 use policy_core::{CharacterPack, ControllerState, GamepadState};
 
@@ -11,12 +12,13 @@ pub(super) struct SavedTick {
     pub(super) down_secs: f32,
     pub(super) shoved_secs: f32,
     pub(super) was_down: bool,
+    pub(super) place: Option<Vec2>,
 }
 
 impl SavedTick {
     pub(super) fn new(pack: &CharacterPack) -> Self {
         let controller = ControllerState::new(pack);
-        Self { controller, down_secs: 0.0, shoved_secs: 0.0, was_down: false }
+        Self { controller, down_secs: 0.0, shoved_secs: 0.0, was_down: false, place: None }
     }
 }
 

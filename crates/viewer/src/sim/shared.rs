@@ -43,7 +43,7 @@ pub struct SharedWorld {
     held: Option<(Held, Handle<Grab>)>,
     events: Vec<RaceEvent>,
     /// What diverged since they were read, in words.
-    mishaps: Vec<String>,
+    put_right: Vec<String>,
     control_time: Duration,
 }
 
@@ -99,7 +99,7 @@ impl SharedWorld {
             history: ring,
             held: None,
             events: Vec::new(),
-            mishaps: Vec::new(),
+            put_right: Vec::new(),
             control_time: Duration::ZERO,
         };
         shared.look();
@@ -148,8 +148,8 @@ impl SharedWorld {
     }
 
     /// What diverged since this was called last, and what became of it.
-    pub fn take_mishaps(&mut self) -> Vec<String> {
-        std::mem::take(&mut self.mishaps)
+    pub fn take_put_right(&mut self) -> Vec<String> {
+        std::mem::take(&mut self.put_right)
     }
 
     pub(super) fn control_time(&self) -> Duration {
@@ -305,7 +305,8 @@ impl SharedWorld {
                 Some(Diverging::Prop(_)) => "a prop".into(),
                 _ => "the world".into(),
             };
-            self.mishaps.push(format!("The physics of {who} diverged ({}): it {outcome}.", divergence.cause));
+            self.put_right
+                .push(format!("The physics of {who} diverged ({}): it {outcome}.", divergence.cause));
         }
         put_back
     }

@@ -6,12 +6,24 @@ use glam::Vec2;
 use physics_bridge::{BodyPoses, Pose};
 use policy_core::{
     Arithmetic, BlendMode, CharacterPack, CharacterState, Command, Controller, ControllerConfig,
-    ControllerState, Heading, StateError, TickReport,
+    ControllerState, Goal, Heading, StateError, TickReport,
 };
 
 use super::bodies::BodyRef;
 use super::rewind::{Ring, SavedTick};
 use super::{SHOVED_BELOW_MPS, Totals};
+
+/// A gait without a direction is held within this distance of where it came to rest, metres.
+const HOLDS_WITHIN_M: f32 = 0.3;
+
+/// A nearer target turns it too slowly, metres.
+const TURNS_BEYOND_M: f32 = 3.0;
+
+/// A blend that is nearer to its goal has arrived, in coordinates of a path.
+const ARRIVED: f32 = 0.05;
+
+/// It came to rest below this speed, metres per second.
+const RESTS_BELOW_MPS: f32 = 0.7;
 
 /// A character's controller, and what is known of its motion.
 #[derive(Clone, Debug)]
@@ -27,6 +39,8 @@ pub struct SteeredCharacter {
     /// Seconds that the last shove still acts.
     pub(super) shoved_secs: f32,
     was_down: bool,
+    /// Where a gait without a direction came to rest.
+    place: Option<Vec2>,
     poses: [BodyPoses; 2],
     pose: Pose,
     /// One entry for each tick that the physics keeps; `None` where it keeps none.
@@ -46,6 +60,7 @@ impl SteeredCharacter {
             down_secs: 0.0,
             shoved_secs: 0.0,
             was_down: false,
+            place: None,
             history,
             controller: Controller::with_config(pack, config(mode)),
         };
@@ -102,7 +117,40 @@ impl SteeredCharacter {
     /// Takes the player's command. The target moves along, so that a crowd keeps its order.
     pub(super) fn receive(&mut self, command: &Command, player: Vec2) {
         self.command = *command;
-        self.command.target = command.target.map(|t| t - player + self.position());
+        self.command.target = match command.target {
+            Some(target) => {
+                self.place = None;
+                Some(target - player + self.position())
+            }
+            None => self.held_target(),
+        };
+    }
+
+    /// A gait that is asked for without a direction, such as a crouch, wanders. The target then leads back to where it
+    /// came to rest; `None` while it is near enough.
+    fn held_target(&mut self) -> Option<Vec2> {
+        let holds = self.has_arrived() && (self.place.is_some() || self.speed() < RESTS_BELOW_MPS);
+        if !holds || self.is_down() {
+            self.place = None;
+            return None;
+        }
+        let here = self.position();
+        let place = *self.place.get_or_insert(here);
+        let off = place - here;
+        (off.length() > HOLDS_WITHIN_M).then(|| here + off.clamp_length_min(TURNS_BEYOND_M))
+    }
+
+    /// True when the blend is where the command wants it, and that is not the policy that stands still.
+    fn has_arrived(&self) -> bool {
+        let (position, graph) = (self.report().position, self.controller.pack().graph());
+        match self.command.goal {
+            Goal::Stay => false,
+            Goal::Node(node) => node.index() > 0 && position.as_node() == Some(node),
+            Goal::Path { path, coordinate } => graph.paths().get(path.index()).is_some_and(|path| {
+                let now = path.coordinate(position);
+                coordinate > 0.0 && now.is_some_and(|now| (now - coordinate.min(path.end())).abs() < ARRIVED)
+            }),
+        }
     }
 
     /// Updates poses, history and sums after a tick of `dt_secs`.
@@ -132,6 +180,7 @@ impl SteeredCharacter {
     pub(super) fn put_back(&mut self, body: BodyRef<'_>) {
         self.controller.reset();
         (self.down_secs, self.shoved_secs, self.was_down) = (0.0, 0.0, false);
+        self.place = None;
         self.remember();
         self.take_pose(body);
         self.stand_still();
@@ -149,6 +198,7 @@ impl SteeredCharacter {
     pub(super) fn restart(&mut self, body: BodyRef<'_>) {
         self.controller.reset();
         (self.down_secs, self.shoved_secs, self.was_down) = (0.0, 0.0, false);
+        self.place = None;
         self.forget_past();
         self.take_pose(body);
         self.stand_still();
@@ -185,7 +235,7 @@ impl SteeredCharacter {
             let saved = history.next();
             self.controller.save_into(&mut saved.controller);
             (saved.down_secs, saved.shoved_secs) = (self.down_secs, self.shoved_secs);
-            saved.was_down = self.was_down;
+            (saved.was_down, saved.place) = (self.was_down, self.place);
         }
     }
 
@@ -195,7 +245,7 @@ impl SteeredCharacter {
         // It was saved by a controller of the same pack.
         debug_assert!(restored.is_ok(), "{restored:?}");
         (self.down_secs, self.shoved_secs) = (saved.down_secs, saved.shoved_secs);
-        self.was_down = saved.was_down;
+        (self.was_down, self.place) = (saved.was_down, saved.place);
     }
 
     /// Forgets the pose of the tick before.

@@ -12,7 +12,7 @@ use policy_core::format::{
 };
 use policy_core::training::{ActionScaling, Layer, Normaliser, PackTensors};
 use policy_core::{CharacterPack, Mlp};
-use viewer::app::{App, PanelKind, PanelLayout, Side};
+use viewer::app::{App, PanelKind, PanelLayout, Preferences, Side};
 use viewer::assets;
 use viewer::gpu::Gpu;
 use viewer::sim::{SimConfig, Simulation};
@@ -28,10 +28,15 @@ pub fn simulation_of(pack: Arc<CharacterPack>) -> Simulation {
     Simulation::new(pack, config).unwrap()
 }
 
+/// The advanced layout with these panels open.
+pub fn advanced(open: Vec<(PanelKind, Side)>) -> PanelLayout {
+    let preferences = Preferences { advanced: true, ..Preferences::default() };
+    PanelLayout { open, preferences, ..PanelLayout::default() }
+}
+
 /// The demo with one panel open.
 pub fn app_with(kind: PanelKind) -> App {
-    let layout = PanelLayout { open: vec![(kind, Side::Left)], ..PanelLayout::default() };
-    App::new(simulation(), layout)
+    App::new(simulation(), advanced(vec![(kind, Side::Left)]))
 }
 
 /// A device, or a message that says why the test is skipped.

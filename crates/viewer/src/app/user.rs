@@ -1,0 +1,78 @@
+//! What the player does, seen from outside: whether anybody steers, and which first steps are done.
+
+use glam::Vec3;
+use policy_core::GamepadState;
+
+use super::first_steps::path;
+use super::{App, Doing, Keys};
+
+/// Height of the eyes above the root of a character without a head, metres.
+const EYES_ABOVE_ROOT_M: f32 = 0.4;
+/// A stick that is pushed less does not steer.
+const STICK_REST: f32 = 0.05;
+
+impl App {
+    /// Notes whether the player touched mouse or keyboard in this frame: the tour waits, or ends.
+    pub(super) fn see_user(&mut self, context: &egui::Context) {
+        let acts = |event: &egui::Event| {
+            use egui::Event as E;
+            matches!(
+                event,
+                E::Key { .. }
+                    | E::Text(_)
+                    | E::PointerMoved(_)
+                    | E::PointerButton { .. }
+                    | E::MouseWheel { .. }
+                    | E::Touch { .. }
+            )
+        };
+        if context.input(|input| input.events.iter().any(acts)) {
+            self.tour.interrupt();
+        }
+    }
+
+    /// Lets `dt` seconds of the clock on the wall pass for what waits for the player.
+    pub(super) fn watch_user(&mut self, dt: f32) {
+        let steered = self.pad.state != GamepadState::default() || self.keys != Keys::default();
+        let busy = self.help || self.leaving || self.choosing || self.recording.is_some();
+        let runs = !self.clock.paused && self.failure.is_none() && self.sim.playback().is_none();
+        let wanted = self.layout.preferences.plays_tour;
+        self.tour.advance(dt, wanted && runs && !busy && !steered);
+        self.toasts.advance(dt);
+        if self.first_steps.are_over() {
+            self.layout.preferences.shows_first_steps = false;
+        }
+    }
+
+    /// Ticks off what the player has done in the last tick. The tour does not count.
+    pub(super) fn observe_first_steps(&mut self, input: &GamepadState) {
+        if self.tour.is_playing() || !self.layout.preferences.shows_first_steps {
+            return;
+        }
+        let (player, pack) = (self.sim.player(), self.sim.pack());
+        let share = |name: &str| {
+            let path = path(pack, name)?;
+            Some(path.coordinate(player.report().position)? / path.end().max(1.0))
+        };
+        let roll = pack.skill_named("roll");
+        let doing = Doing {
+            dt_secs: self.sim.tick_secs(),
+            steers: input.left_stick.iter().any(|push| push.abs() > STICK_REST),
+            speed_mps: player.speed(),
+            speed_share: share("speed").unwrap_or(0.0),
+            stance_share: share("stance").unwrap_or(0.0),
+            rolls: roll.is_some() && player.report().skill.map(|s| s.skill) == roll,
+            pull_newtons: self.grab.map_or(0.0, |grab| grab.force().length()),
+        };
+        self.first_steps.observe(&doing, pack);
+    }
+
+    /// Where the player's eyes are, `alpha` of the way into the last tick.
+    pub(super) fn head(&self, alpha: f32) -> Vec3 {
+        let positions = self.sim.poses(0, alpha).positions;
+        match self.sim.pack().skeleton().head() {
+            Some(head) => positions[head.index()],
+            None => positions[0] + Vec3::Z * EYES_ABOVE_ROOT_M,
+        }
+    }
+}
