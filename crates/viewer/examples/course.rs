@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use glam::Vec2;
 use policy_core::{CharacterPack, GamepadState, Heading};
-use viewer::playground::CourseState;
+use viewer::playground::RaceState;
 use viewer::sim::{SceneKind, SimConfig, Simulation};
 
 /// The way: x, y, left trigger, right trigger, each to within so many metres.
@@ -42,7 +42,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     for seed in 1..=seeds {
         let config = SimConfig { scene: SceneKind::Playground, characters: 5, seed, ..SimConfig::default() };
         let mut sim = Simulation::new(Arc::clone(&pack), config)?;
-        let (mut step, mut state, mut falls) = (0, CourseState::Waiting, Vec::new());
+        let (mut step, mut state, mut falls) = (0, RaceState::Waiting, Vec::new());
         let mut was_down = false;
         while step < WAY.len() && sim.ticks() as f32 * sim.tick_secs() < MOST_SECS {
             let [x, y, left_trigger, right_trigger, near] = WAY[step];
@@ -57,9 +57,9 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
                 falls.push(sim.player().position());
             }
             was_down = down;
-            state = sim.shared().map_or(state, |shared| shared.course().state());
+            state = sim.shared().map_or(state, |shared| shared.race().state());
         }
-        let secs = sim.shared().ok_or("expected a playground")?.course().secs(sim.tick_secs());
+        let secs = sim.shared().ok_or("expected a playground")?.race().secs(sim.tick_secs());
         println!(
             "seed {seed}: {state:?}, {step} points of {}, {secs:.1} s, {} falls",
             WAY.len(),

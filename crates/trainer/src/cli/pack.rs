@@ -61,10 +61,10 @@ pub(crate) fn run(
     let joint = plan.joint.as_ref().map(|run| newest(run)).transpose()?.flatten();
     let together = |skill: &str| joint.as_ref().filter(|(loaded, _)| TrainedSkill::is_in(skill, loaded));
     let mut trained = Vec::new();
-    for PlannedPolicy { name, .. } in &plan.policies {
-        let own = match together(name) {
-            Some((loaded, path)) => Some(TrainedSkill::from_checkpoint(name, loaded, path)?),
-            None => newest(name)?
+    for PlannedPolicy { name, from, .. } in &plan.policies {
+        let own = match (from, together(name)) {
+            (None, Some((loaded, path))) => Some(TrainedSkill::from_checkpoint(name, loaded, path)?),
+            _ => newest(from.as_ref().unwrap_or(name))?
                 .map(|(loaded, path)| TrainedSkill::from_checkpoint(name, &loaded, &path))
                 .transpose()?,
         };

@@ -46,6 +46,9 @@ pub struct PackPlan {
 pub struct PlannedPolicy {
     /// Name of the skill that was trained.
     pub name: String,
+    /// Run, or kept checkpoint, that it comes from; without it the joint run, or the skill's own.
+    #[serde(default)]
+    pub from: Option<String>,
     /// Root height below which the character has fallen, metres.
     #[serde(default)]
     pub fall_height: Option<f32>,

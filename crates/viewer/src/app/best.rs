@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use super::App;
-use crate::playground::{BestTime, CourseEvent};
+use crate::playground::{BestTime, RaceEvent};
 
 /// The best time over the course, and where it is kept.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -31,14 +31,14 @@ impl Best {
 
 impl App {
     /// Takes what happened in a shared world during a tick: a new best time is kept at once, and what diverged is told.
-    pub(super) fn follow_course(&mut self) {
+    pub(super) fn follow_race(&mut self) {
         let tick_secs = self.sim.tick_secs();
         let Some(shared) = self.sim.shared_mut() else { return };
-        let (events, mishaps) = (shared.take_events(), shared.take_mishaps());
-        let run = BestTime { secs: shared.course().secs(tick_secs), falls: shared.course().falls() };
+        let (events, put_right) = (shared.take_events(), shared.take_put_right());
+        let run = BestTime { secs: shared.race().secs(tick_secs), falls: shared.race().falls() };
         let scene = shared.scene().name.clone();
-        self.mishaps += mishaps.len();
-        if let Some(last) = mishaps.last() {
+        self.put_right += put_right.len();
+        if let Some(last) = put_right.last() {
             self.toasts.error(last.clone());
         }
         let file = self.best.settings.as_deref().map(|settings| BestTime::file_beside(settings, &scene));
@@ -50,7 +50,7 @@ impl App {
                 Err(error) => self.toasts.error(error.to_string()),
             }
         }
-        if events.contains(&CourseEvent::Finished) && run.beats(self.best.time) {
+        if events.contains(&RaceEvent::Finished) && run.beats(self.best.time) {
             self.best.time = Some(run);
             if let Some(Err(error)) = file.map(|path| run.save(&path)) {
                 self.toasts.error(error.to_string());

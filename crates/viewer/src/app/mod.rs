@@ -142,7 +142,7 @@ pub struct App {
     /// The best time over the course of this scene.
     pub best: Best,
     /// What diverged in a shared world and was put right, so far.
-    pub mishaps: usize,
+    pub put_right: usize,
     /// A file that was dropped on the window; the frame composer opens it.
     pub dropped: Option<std::path::PathBuf>,
     analysis_soon: Option<Receiver<Analysis>>,
@@ -188,7 +188,7 @@ impl App {
             overridden_at: GamepadState::default(),
             ground_changed: true,
             best: Best::default(),
-            mishaps: 0,
+            put_right: 0,
             dropped: None,
             analysis_soon: None,
         }
@@ -252,7 +252,7 @@ impl App {
         self.tour.tick(self.sim.tick_secs());
         self.observe_first_steps(&input);
         self.note_refusal();
-        self.follow_course();
+        self.follow_race();
         if self.sim.playback().is_some_and(Playback::has_restarted) {
             self.trail.clear();
         }

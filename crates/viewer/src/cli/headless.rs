@@ -7,7 +7,7 @@ use anyhow::{Context as _, bail};
 
 use super::open::open;
 use super::pad_input::PadInput;
-use super::report::{CourseReport, Report};
+use super::report::{RaceReport, Report};
 use super::{Demo, MOST_SECS};
 use crate::analysis::Analysis;
 use crate::app::App;
@@ -189,12 +189,12 @@ impl<'a> Headless<'a> {
             falls: totals.falls,
             after_a_fall,
             stood_up: totals.stood_up,
-            diverged: self.divergences + self.app.mishaps,
+            diverged: self.divergences + self.app.put_right,
             replays: self.replays,
             mean_speed_mps: distance_m / self.seconds.max(self.app.sim.tick_secs().into()),
             control_ticks_per_second: ticks / totals.whole.as_secs_f64().max(1e-9),
             policy_microseconds_per_tick: totals.policy.as_secs_f64() * 1e6 / ticks,
-            course: self.app.sim.shared().map(|s| CourseReport::of(s, self.app.sim.tick_secs())),
+            race: self.app.sim.shared().map(|s| RaceReport::of(s, self.app.sim.tick_secs())),
             state_hash: totals.hash.to_string(),
             frames: self.painter.as_ref().map_or(0, |p| p.drawn),
             adapter: self.painter.as_ref().map(|_| self.app.adapter.clone()),

@@ -2,7 +2,7 @@
 
 use serde::Serialize;
 
-use crate::playground::CourseState;
+use crate::playground::RaceState;
 use crate::sim::SharedWorld;
 use crate::text::counted;
 
@@ -46,7 +46,7 @@ pub struct Report {
     /// Time of one controller's tick, mean.
     pub policy_microseconds_per_tick: f64,
     /// The player's run over the course, where there is one.
-    pub course: Option<CourseReport>,
+    pub race: Option<RaceReport>,
     /// Over all positions and velocities: equal runs have equal hashes.
     pub state_hash: String,
     /// Pictures written.
@@ -57,7 +57,7 @@ pub struct Report {
 
 /// How far the player came on the course.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct CourseReport {
+pub struct RaceReport {
     /// Checkpoints of the course.
     pub checkpoints: usize,
     /// Those that the last run passed.
@@ -70,18 +70,18 @@ pub struct CourseReport {
     pub falls: u32,
 }
 
-impl CourseReport {
+impl RaceReport {
     /// Of a world with a course.
     #[must_use]
     pub fn of(shared: &SharedWorld, tick_secs: f32) -> Self {
-        let (course, checkpoints) = (shared.course(), shared.scene().checkpoints.len());
-        let finished = course.state() == CourseState::Finished;
+        let (race, checkpoints) = (shared.race(), shared.scene().checkpoints.len());
+        let finished = race.state() == RaceState::Finished;
         Self {
             checkpoints,
-            passed: if finished { checkpoints } else { course.next() },
+            passed: if finished { checkpoints } else { race.next() },
             finished,
-            seconds: course.secs(tick_secs),
-            falls: course.falls(),
+            seconds: race.secs(tick_secs),
+            falls: race.falls(),
         }
     }
 }

@@ -2,7 +2,6 @@
 
 mod analysis;
 mod blend_mode;
-mod course;
 mod failure;
 mod first_steps;
 mod graph;
@@ -14,6 +13,7 @@ mod paths;
 mod physics;
 mod preferences;
 mod profiler;
+mod race;
 mod record;
 mod simple;
 mod skills;
@@ -53,7 +53,7 @@ pub(crate) fn show(ui: &mut Ui, app: &App, commands: &mut Vec<ViewerCommand>) ->
     } else {
         first_steps::show(ui, app, free, commands);
     }
-    course::show(ui, app, free);
+    race::show(ui, app, free);
     toasts::show(ui, app, free, commands);
     if app.help {
         help::show(ui, app, commands);

@@ -139,9 +139,8 @@ fn matter(ui: &mut Ui, app: &App, commands: &mut Vec<ViewerCommand>) {
         (" ×", "strength", "Of all joints, against the character's own"),
     );
     let mass = Slider::new(&mut settings.mass, 0.2..=3.0).suffix(" ×").text("mass");
-    ui.add_enabled(app.sim.shared().is_none(), mass)
-        .on_hover_text("Of all bodies, against the character's own")
-        .on_disabled_hover_text(NO_MASS);
+    let mass = ui.add_enabled(app.sim.shared().is_none(), mass);
+    mass.on_hover_text("Of all bodies, against the character's own").on_disabled_hover_text(NO_MASS);
     if settings != before {
         commands.push(ViewerCommand::Settings(settings));
     }

@@ -114,9 +114,9 @@ enum FixtureEntry {
         paint: Paint,
     },
     /// Steps up from the foot `at` along `yaw`.
-    Stairs { at: Triple, yaw: f32, width: f32, steps: usize, rise: f32, run: f32, paint: Paint },
+    Stairs { at: Triple, yaw: f32, width: f32, steps: usize, riser: f32, run: f32, paint: Paint },
     /// A slope up from the foot `at` along `yaw`.
-    Ramp { at: Triple, yaw: f32, width: f32, length: f32, rise: f32, paint: Paint },
+    Ramp { at: Triple, yaw: f32, width: f32, length: f32, riser: f32, paint: Paint },
     /// A cylinder about `at`, upright or along `yaw` when it lies.
     Pole {
         at: Triple,
@@ -220,13 +220,13 @@ impl FixtureEntry {
             Self::Block { at, size, yaw, paint } => {
                 blocks.cuboid(place(at)?, extents(size)?, turn(yaw)?, paint);
             }
-            Self::Stairs { at, yaw, width, steps, rise, run, paint } => {
+            Self::Stairs { at, yaw, width, steps, riser, run, paint } => {
                 count("steps", [1, 64], steps)?;
-                let size = extents([run, width, rise])?;
+                let size = extents([run, width, riser])?;
                 blocks.stairs((place(at)?, turn(yaw)?), steps, size, paint);
             }
-            Self::Ramp { at, yaw, width, length, rise, paint } => {
-                let size = extents([length, width, rise])?;
+            Self::Ramp { at, yaw, width, length, riser, paint } => {
+                let size = extents([length, width, riser])?;
                 blocks.ramp((place(at)?, turn(yaw)?), size, paint);
             }
             Self::Pole { at, radius, length, lies_along, paint } => {

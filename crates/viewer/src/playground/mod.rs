@@ -2,9 +2,9 @@
 //! pure functions of it; knows no physics engine, no drawing and no devices.
 
 mod best_time;
-mod course;
 mod file;
 mod layout;
+mod race;
 mod wander;
 
 use std::sync::Arc;
@@ -13,8 +13,8 @@ use glam::{Quat, Vec2, Vec3};
 use physics_bridge::{Fixture, Joint, Prop};
 
 pub use best_time::{BestTime, BestTimeError};
-pub use course::{Course, CourseEvent, CourseState};
 pub use file::SceneFileError;
+pub use race::{Race, RaceEvent, RaceState};
 pub use wander::{Wanderer, Wish};
 
 /// Colours of what stands in a scene.

@@ -4,7 +4,7 @@ use glam::{Mat4, Quat, Vec3};
 use physics_bridge::{FixtureShape, Solid as Shape};
 
 use super::ring;
-use crate::playground::{CourseState, Paint};
+use crate::playground::{Paint, RaceState};
 use crate::render::{Marker, Scene, Solid};
 use crate::sim::SharedWorld;
 
@@ -84,11 +84,11 @@ fn rod(scene: &mut Scene, from: Vec3, to: Vec3) {
 
 /// A ring on the ground for each checkpoint, and a light above the next.
 fn checkpoints(scene: &mut Scene, shared: &SharedWorld) {
-    let (course, playground) = (shared.course(), shared.scene());
+    let (race, playground) = (shared.race(), shared.scene());
     for (index, checkpoint) in playground.checkpoints.iter().enumerate() {
-        let is_next = index == course.next();
+        let is_next = index == race.next();
         // Those that are done are left out.
-        if course.state() == CourseState::Running && index < course.next() {
+        if race.state() == RaceState::Running && index < race.next() {
             continue;
         }
         let ground = playground.height_at(checkpoint.at, 1.0) + 0.02;

@@ -15,7 +15,7 @@ use policy_core::{BodyId, Heading};
 
 use super::rewind::Ring;
 use super::{SimError, SteeredCharacter};
-use crate::playground::{Course, CourseEvent, Playground, Wanderer};
+use crate::playground::{Playground, Race, RaceEvent, Wanderer};
 pub use loose::{LooseKind, MOST_BALLS};
 pub use pieces::Piece;
 pub(super) use wishes::Wishes;
@@ -41,9 +41,9 @@ pub struct SharedWorld {
     state: PlayState,
     history: Option<Box<Ring<PlayState>>>,
     held: Option<(Held, Handle<Grab>)>,
-    events: Vec<CourseEvent>,
+    events: Vec<RaceEvent>,
     /// What diverged since they were read, in words.
-    mishaps: Vec<String>,
+    put_right: Vec<String>,
     control_time: Duration,
 }
 
@@ -52,7 +52,7 @@ pub struct SharedWorld {
 pub(super) struct PlayState {
     pieces: Vec<Piece>,
     wanderers: Vec<Wanderer>,
-    course: Course,
+    race: Race,
     spawned: u32,
 }
 
@@ -86,7 +86,7 @@ impl SharedWorld {
             Wanderer::new(start.zone, start.heading, seed.into(), index as u64)
         };
         let wanderers = scene.starts[..characters].iter().enumerate().skip(1).map(wanderer).collect();
-        let state = PlayState { pieces, wanderers, course: Course::default(), spawned: 0 };
+        let state = PlayState { pieces, wanderers, race: Race::default(), spawned: 0 };
         if history {
             world.record_history(HISTORY_SECS);
         }
@@ -99,7 +99,7 @@ impl SharedWorld {
             history: ring,
             held: None,
             events: Vec::new(),
-            mishaps: Vec::new(),
+            put_right: Vec::new(),
             control_time: Duration::ZERO,
         };
         shared.look();
@@ -122,8 +122,8 @@ impl SharedWorld {
 
     /// The player's run over the course.
     #[must_use]
-    pub fn course(&self) -> &Course {
-        &self.state.course
+    pub fn race(&self) -> &Race {
+        &self.state.race
     }
 
     /// A character, by index.
@@ -143,13 +143,13 @@ impl SharedWorld {
     }
 
     /// What happened on the course since this was called last.
-    pub fn take_events(&mut self) -> Vec<CourseEvent> {
+    pub fn take_events(&mut self) -> Vec<RaceEvent> {
         std::mem::take(&mut self.events)
     }
 
     /// What diverged since this was called last, and what became of it.
-    pub fn take_mishaps(&mut self) -> Vec<String> {
-        std::mem::take(&mut self.mishaps)
+    pub fn take_put_right(&mut self) -> Vec<String> {
+        std::mem::take(&mut self.put_right)
     }
 
     pub(super) fn control_time(&self) -> Duration {
@@ -209,7 +209,7 @@ impl SharedWorld {
     /// What follows from a tick for props and course.
     pub(super) fn observe(&mut self, player: &SteeredCharacter) {
         self.look();
-        let event = self.state.course.tick(&self.scene.checkpoints, player.position(), player.is_down());
+        let event = self.state.race.tick(&self.scene.checkpoints, player.position(), player.is_down());
         self.events.extend(event);
         self.remember();
     }
@@ -305,7 +305,8 @@ impl SharedWorld {
                 Some(Diverging::Prop(_)) => "a prop".into(),
                 _ => "the world".into(),
             };
-            self.mishaps.push(format!("The physics of {who} diverged ({}): it {outcome}.", divergence.cause));
+            self.put_right
+                .push(format!("The physics of {who} diverged ({}): it {outcome}.", divergence.cause));
         }
         put_back
     }

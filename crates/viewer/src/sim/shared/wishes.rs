@@ -50,7 +50,8 @@ impl SharedWorld {
         dt_secs: f32,
     ) {
         let Some((first, others)) = steered.split_first_mut() else { return };
-        first.command = *player;
+        let at = first.position();
+        first.receive(player, at);
         for (other, wanderer) in others.iter_mut().zip(&mut self.state.wanderers) {
             let wish = wanderer.tick(other.position(), dt_secs);
             other.command = wishes.command(wish, other);

@@ -4,28 +4,28 @@ use egui::{Align2, Area, RichText, Ui};
 
 use super::{PRESENT, REQUESTED, frame};
 use crate::app::App;
-use crate::playground::CourseState;
+use crate::playground::RaceState;
 use crate::text::counted;
 
 /// The overlay at the top of the picture; nothing on the empty floor.
 pub(super) fn show(ui: &Ui, app: &App, free: egui::Rect) {
     let Some(shared) = app.sim.shared() else { return };
-    let (course, count) = (shared.course(), shared.scene().checkpoints.len());
-    let clock = minutes(course.secs(app.sim.tick_secs()));
-    let (state, colour) = match course.state() {
-        CourseState::Waiting => ("Walk through the lit ring to start the clock".to_owned(), PRESENT),
-        CourseState::Running => (format!("Checkpoint {} of {count}", course.next() + 1), REQUESTED),
-        CourseState::Finished => ("Finished; the first ring starts again".to_owned(), PRESENT),
+    let (race, count) = (shared.race(), shared.scene().checkpoints.len());
+    let clock = minutes(race.secs(app.sim.tick_secs()));
+    let (state, colour) = match race.state() {
+        RaceState::Waiting => ("Walk through the lit ring to start the clock".to_owned(), PRESENT),
+        RaceState::Running => (format!("Checkpoint {} of {count}", race.next() + 1), REQUESTED),
+        RaceState::Finished => ("Finished; the first ring starts again".to_owned(), PRESENT),
     };
     let at = free.center_top() + egui::vec2(0.0, 8.0);
-    let area = Area::new(egui::Id::unique("course")).fixed_pos(at).pivot(Align2::CENTER_TOP);
+    let area = Area::new(egui::Id::unique("race")).fixed_pos(at).pivot(Align2::CENTER_TOP);
     area.interactable(false).show(ui.ctx(), |ui| {
         frame().show(ui, |ui| {
             ui.horizontal(|ui| {
                 ui.colored_label(colour, state);
-                if course.state() != CourseState::Waiting {
+                if race.state() != RaceState::Waiting {
                     ui.label(RichText::new(clock).monospace().size(18.0));
-                    ui.label(counted(u64::from(course.falls()), "fall"));
+                    ui.label(counted(u64::from(race.falls()), "fall"));
                 }
                 if let Some(best) = app.best.time() {
                     ui.weak(format!("best {}", minutes(best.secs)));

@@ -6,7 +6,7 @@ use super::Checkpoint;
 
 /// Where a player is on the course.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum CourseState {
+pub enum RaceState {
     /// Before the first checkpoint: the clock stands.
     Waiting,
     /// Between the first and the last.
@@ -17,7 +17,7 @@ pub enum CourseState {
 
 /// What a tick brought.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum CourseEvent {
+pub enum RaceEvent {
     /// The first checkpoint: the clock runs.
     Started,
     /// Another one.
@@ -28,24 +28,24 @@ pub enum CourseEvent {
 
 /// One player's run over the course.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Course {
-    state: CourseState,
+pub struct Race {
+    state: RaceState,
     next: usize,
     ticks: u32,
     falls: u32,
     was_down: bool,
 }
 
-impl Default for Course {
+impl Default for Race {
     fn default() -> Self {
-        Self { state: CourseState::Waiting, next: 0, ticks: 0, falls: 0, was_down: false }
+        Self { state: RaceState::Waiting, next: 0, ticks: 0, falls: 0, was_down: false }
     }
 }
 
-impl Course {
+impl Race {
     /// Where it is.
     #[must_use]
-    pub fn state(&self) -> CourseState {
+    pub fn state(&self) -> RaceState {
         self.state
     }
 
@@ -69,10 +69,10 @@ impl Course {
 
     /// One tick of a player that is at a point and down or not. Passing the first checkpoint starts a run, also while
     /// one has ended; the next ones count in their order only.
-    pub fn tick(&mut self, checkpoints: &[Checkpoint], at: Vec2, down: bool) -> Option<CourseEvent> {
+    pub fn tick(&mut self, checkpoints: &[Checkpoint], at: Vec2, down: bool) -> Option<RaceEvent> {
         let was_down = std::mem::replace(&mut self.was_down, down);
         let fell = down && !was_down;
-        if self.state == CourseState::Running {
+        if self.state == RaceState::Running {
             self.ticks = self.ticks.saturating_add(1);
             self.falls += u32::from(fell);
         }
@@ -81,16 +81,16 @@ impl Course {
             return None;
         }
         let event = match (self.next, self.next + 1 == checkpoints.len()) {
-            (0, _) => CourseEvent::Started,
-            (_, true) => CourseEvent::Finished,
-            _ => CourseEvent::Passed,
+            (0, _) => RaceEvent::Started,
+            (_, true) => RaceEvent::Finished,
+            _ => RaceEvent::Passed,
         };
         match event {
-            CourseEvent::Started => {
-                *self = Self { state: CourseState::Running, next: 1, was_down: down, ..Self::default() };
+            RaceEvent::Started => {
+                *self = Self { state: RaceState::Running, next: 1, was_down: down, ..Self::default() };
             }
-            CourseEvent::Passed => self.next += 1,
-            CourseEvent::Finished => (self.state, self.next) = (CourseState::Finished, 0),
+            RaceEvent::Passed => self.next += 1,
+            RaceEvent::Finished => (self.state, self.next) = (RaceState::Finished, 0),
         }
         Some(event)
     }
@@ -105,64 +105,64 @@ mod tests {
     }
 
     /// Walks along x to `to`, half a metre a tick; returns the events.
-    fn walk(course: &mut Course, from: f32, to: f32) -> Vec<CourseEvent> {
+    fn walk(race: &mut Race, from: f32, to: f32) -> Vec<RaceEvent> {
         let steps = ((to - from).abs() / 0.5) as i32;
         let at = |step: i32| Vec2::new(from + (to - from).signum() * 0.5 * step as f32, 0.2);
-        (1..=steps).filter_map(|step| course.tick(&checkpoints(), at(step), false)).collect()
+        (1..=steps).filter_map(|step| race.tick(&checkpoints(), at(step), false)).collect()
     }
 
     #[test]
     fn checkpoints_count_in_their_order_and_the_clock_runs_between_the_first_and_the_last() {
-        let mut course = Course::default();
-        assert_eq!(walk(&mut course, 30.0, 8.0), [], "the last ones first are no start");
-        assert_eq!((course.state(), course.secs(0.1)), (CourseState::Waiting, 0.0));
-        use CourseEvent::{Finished, Passed, Started};
-        assert_eq!(walk(&mut course, -5.0, 30.0), [Started, Passed, Finished]);
-        assert_eq!((course.state(), course.next()), (CourseState::Finished, 0));
+        let mut race = Race::default();
+        assert_eq!(walk(&mut race, 30.0, 8.0), [], "the last ones first are no start");
+        assert_eq!((race.state(), race.secs(0.1)), (RaceState::Waiting, 0.0));
+        use RaceEvent::{Finished, Passed, Started};
+        assert_eq!(walk(&mut race, -5.0, 30.0), [Started, Passed, Finished]);
+        assert_eq!((race.state(), race.next()), (RaceState::Finished, 0));
         // From one metre before the first to one metre before the last, half a metre a tick.
-        assert!((course.secs(0.1) - 4.0).abs() < 0.11, "{}", course.secs(0.1));
-        let stopped = course.secs(0.1);
-        walk(&mut course, 30.0, 5.0);
-        assert_eq!(course.secs(0.1), stopped, "the clock stands");
+        assert!((race.secs(0.1) - 4.0).abs() < 0.11, "{}", race.secs(0.1));
+        let stopped = race.secs(0.1);
+        walk(&mut race, 30.0, 5.0);
+        assert_eq!(race.secs(0.1), stopped, "the clock stands");
     }
 
     #[test]
     fn a_checkpoint_that_is_left_out_stops_the_count() {
-        let mut course = Course::default();
-        walk(&mut course, -5.0, 5.0);
+        let mut race = Race::default();
+        walk(&mut race, -5.0, 5.0);
         let around = |x: f32| Vec2::new(x, 6.0);
         for step in 0..40 {
-            assert_eq!(course.tick(&checkpoints(), around(5.0 + 0.5 * step as f32), false), None);
+            assert_eq!(race.tick(&checkpoints(), around(5.0 + 0.5 * step as f32), false), None);
         }
-        assert_eq!(course.tick(&checkpoints(), Vec2::new(20.0, 0.0), false), None);
-        assert_eq!((course.state(), course.next()), (CourseState::Running, 1));
+        assert_eq!(race.tick(&checkpoints(), Vec2::new(20.0, 0.0), false), None);
+        assert_eq!((race.state(), race.next()), (RaceState::Running, 1));
     }
 
     #[test]
     fn each_fall_counts_once_and_only_on_the_course() {
-        let mut course = Course::default();
-        let lie = |course: &mut Course, x: f32| {
+        let mut race = Race::default();
+        let lie = |race: &mut Race, x: f32| {
             for down in [true, true, true, false] {
-                course.tick(&checkpoints(), Vec2::new(x, 0.0), down);
+                race.tick(&checkpoints(), Vec2::new(x, 0.0), down);
             }
         };
-        lie(&mut course, -5.0);
-        walk(&mut course, -5.0, 5.0);
-        assert_eq!(course.falls(), 0);
-        lie(&mut course, 5.0);
-        lie(&mut course, 6.0);
-        assert_eq!(course.falls(), 2);
-        walk(&mut course, 6.0, 30.0);
-        lie(&mut course, 30.0);
-        assert_eq!((course.state(), course.falls()), (CourseState::Finished, 2));
+        lie(&mut race, -5.0);
+        walk(&mut race, -5.0, 5.0);
+        assert_eq!(race.falls(), 0);
+        lie(&mut race, 5.0);
+        lie(&mut race, 6.0);
+        assert_eq!(race.falls(), 2);
+        walk(&mut race, 6.0, 30.0);
+        lie(&mut race, 30.0);
+        assert_eq!((race.state(), race.falls()), (RaceState::Finished, 2));
     }
 
     #[test]
     fn a_second_run_begins_from_zero() {
-        let mut course = Course::default();
-        walk(&mut course, -5.0, 30.0);
-        assert_eq!(walk(&mut course, 30.0, -0.5), [CourseEvent::Started]);
-        assert_eq!((course.state(), course.next()), (CourseState::Running, 1));
-        assert!(course.secs(0.1) < 0.35, "{}", course.secs(0.1));
+        let mut race = Race::default();
+        walk(&mut race, -5.0, 30.0);
+        assert_eq!(walk(&mut race, 30.0, -0.5), [RaceEvent::Started]);
+        assert_eq!((race.state(), race.next()), (RaceState::Running, 1));
+        assert!(race.secs(0.1) < 0.35, "{}", race.secs(0.1));
     }
 }
