@@ -39,7 +39,7 @@ fn a_ghost_under_the_same_mode_does_the_same_and_under_another_does_not() {
     run(&mut sim, 40);
     assert_eq!(sim.ghost_poses(1.0), Some(sim.player().poses(1.0)));
     let mut sim = simulation();
-    run(&mut sim, 20);
+    run(&mut sim, 5);
     sim.start_ghost(GhostKind::Mode(BlendMode::Switch)).unwrap();
     run(&mut sim, 40);
     assert_ne!(sim.ghost_poses(1.0), Some(sim.player().poses(1.0)));
