@@ -19,6 +19,12 @@ const DRIFT_RADIANS: f32 = 0.6;
 /// The lead raises no turn above this angle, radians. Larger turns are slower with a lead.
 const LARGEST_RADIANS: f32 = 0.5 * PI;
 
+/// A target further behind is asked for at this angle, radians: straight behind, a policy does not know which way to turn.
+const BEHIND_RADIANS: f32 = 0.75 * PI;
+
+/// Rate of turning from which a turn goes on to the side where it began, radians a second.
+const TURNING_RADIANS_PER_SECOND: f32 = 0.5;
+
 /// Corrects the target that a policy sees by the course: the direction in which the root moves.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Steering {
@@ -79,7 +85,13 @@ impl Steering {
             memory.trim = if trim.is_finite() { trim.max(-limit).min(limit) } else { 0.0 };
         }
         let largest = libm::fabsf(off_heading).max(LARGEST_RADIANS);
-        let asked = (off_heading + self.lead * error + memory.trim).clamp(-largest, largest);
+        let asked = if libm::fabsf(off_heading) > BEHIND_RADIANS {
+            let turning = root.angular_velocity.z;
+            let goes_on = libm::fabsf(turning) > TURNING_RADIANS_PER_SECOND;
+            BEHIND_RADIANS.copysign(if goes_on { turning } else { off_heading })
+        } else {
+            (off_heading + self.lead * error + memory.trim).clamp(-largest, largest)
+        };
         let turned = Heading::from_angle(asked - off_heading);
         root.position.truncate() + turned.world_from_heading_2d(to_target)
     }
