@@ -247,3 +247,42 @@ fn a_world_lives() {
         assert!(late < 1.3 * early + 20_000.0, "memory is flat: {early} kB, then {late} kB");
     }
 }
+
+/// Props put into the bodies of a character, `SOAK_INSIDE` times (default 60): they are driven apart, or one of them diverges,
+/// which is told once a tick; the character stays in the world and sound.
+#[test]
+fn props_inside_a_body_leave_it() {
+    let tries = size("SOAK_INSIDE", 60);
+    let (model, mut random, mut told) = (humanoid(), Random(5), 0);
+    let mut soak = Soak::new(1, 1);
+    let who = soak.characters[0];
+    let mut state = CharacterState::new(model.skeleton());
+    for tried in 0..tries {
+        soak.world.sense_into(who, &mut state).unwrap();
+        let body = state.bodies[random.below(state.bodies.len())].position;
+        let what = match soak.world.motion(soak.props[0]) {
+            Ok(_) => soak.props[0],
+            Err(_) => {
+                let prop = prop(&mut random);
+                soak.world.edit(|edit| edit.add_prop(prop, Motion::at(Vec3::Z * 3.0))).unwrap()
+            }
+        };
+        soak.props[0] = what;
+        soak.world.place_prop(what, Motion::at(body)).unwrap();
+        for _ in 0..15 {
+            soak.world.step();
+            let mut of: Vec<_> = soak.world.divergences().iter().map(|divergence| divergence.what).collect();
+            told += of.len();
+            assert!(
+                of.iter()
+                    .all(|of| [Some(Diverging::Prop(what)), Some(Diverging::Character(who))].contains(of))
+            );
+            of.dedup();
+            assert_eq!(of.len(), soak.world.divergences().len(), "told once, try {tried}");
+            soak.world.sense_into(who, &mut state).expect("the character is not lost");
+            let sound = |v: Vec3| v.is_finite() && v.length() <= MAX_SPEED_MPS;
+            assert!(state.bodies.iter().all(|body| sound(body.linear_velocity)), "try {tried}");
+        }
+    }
+    println!("{tries} props inside a body, {told} divergences");
+}
