@@ -19,10 +19,11 @@ const DRIFT_RADIANS: f32 = 0.6;
 /// The lead raises no turn above this angle, radians. Larger turns are slower with a lead.
 const LARGEST_RADIANS: f32 = 0.5 * PI;
 
-/// A target further behind is asked for at this angle, radians: straight behind, a policy does not know which way to turn.
+/// Largest angle off the heading at which a policy sees its target, radians. A policy with a target straight behind it waits
+/// before it turns.
 const BEHIND_RADIANS: f32 = 0.75 * PI;
 
-/// Rate of turning from which a turn goes on to the side where it began, radians a second.
+/// Rate of rotation above which a turn continues to its side, radians a second.
 const TURNING_RADIANS_PER_SECOND: f32 = 0.5;
 
 /// Corrects the target that a policy sees by the course: the direction in which the root moves.
@@ -87,8 +88,8 @@ impl Steering {
         let largest = libm::fabsf(off_heading).max(LARGEST_RADIANS);
         let asked = if libm::fabsf(off_heading) > BEHIND_RADIANS {
             let turning = root.angular_velocity.z;
-            let goes_on = libm::fabsf(turning) > TURNING_RADIANS_PER_SECOND;
-            BEHIND_RADIANS.copysign(if goes_on { turning } else { off_heading })
+            let continues = libm::fabsf(turning) > TURNING_RADIANS_PER_SECOND;
+            BEHIND_RADIANS.copysign(if continues { turning } else { off_heading })
         } else {
             (off_heading + self.lead * error + memory.trim).clamp(-largest, largest)
         };

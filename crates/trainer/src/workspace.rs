@@ -116,6 +116,14 @@ impl Workspace {
         newest_or_kept(&self.runs, &self.kept, skill)
     }
 
+    /// As [`Workspace::newest`], where there has to be one.
+    pub(crate) fn required(&self, name: &str) -> Result<CheckpointFile> {
+        self.newest(name)?.with_context(|| {
+            let [runs, kept] = [self.runs.display(), self.kept.display()];
+            format!("expected a run or a kept checkpoint named {name}, found none in {runs} and {kept}")
+        })
+    }
+
     /// The clips of a recipe, ready to learn from.
     ///
     /// # Errors
@@ -160,10 +168,7 @@ impl Workspace {
         existing: Existing,
     ) -> Result<Run> {
         let name = recipe.skill.clone();
-        let checkpoint = self.newest(from)?.with_context(|| {
-            let [runs, kept] = [self.runs.display(), self.kept.display()];
-            format!("expected a run or a kept checkpoint named {from}, found none in {runs} and {kept}")
-        })?;
+        let checkpoint = self.required(from)?;
         self.prepare_named(&name, recipe, seed, existing, Start::From { checkpoint, samples })
     }
 

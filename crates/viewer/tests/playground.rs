@@ -137,7 +137,7 @@ fn others_wander_and_equal_seeds_wander_alike() {
         (sim.totals().hash, ways)
     };
     let (hash, ways) = run_of(1);
-    assert!(ways[0] < 0.5, "nobody steers the player: {ways:?}");
+    assert!(ways[0] < 0.5, "the player has no input: {ways:?}");
     assert!(ways[1..].iter().any(|way| *way > 0.5), "{ways:?}");
     assert_eq!(run_of(1).0, hash);
     assert_ne!(run_of(2).0, hash);

@@ -66,17 +66,12 @@ impl Lineage {
                 return Ok(true);
             }
         }
-        let read = |name: &String| -> Result<_> {
-            workspace.newest(name)?.with_context(|| {
-                let [runs, kept] = [&workspace.runs, &workspace.kept].map(|folder| folder.display());
-                format!("expected a run or a kept checkpoint named {name}, found none in {runs} and {kept}")
-            })
-        };
         let start = match (&step.from, &step.continues) {
-            (Some(from), _) => {
-                Start::From { checkpoint: read(from)?, samples: step.from_samples.unwrap_or_default() }
-            }
-            (_, Some(continues)) => Start::Continue(read(continues)?),
+            (Some(from), _) => Start::From {
+                checkpoint: workspace.required(from)?,
+                samples: step.from_samples.unwrap_or_default(),
+            },
+            (_, Some(continues)) => Start::Continue(workspace.required(continues)?),
             _ => Start::Parents,
         };
         let workspace = &Workspace { parents: step.parents.clone(), ..workspace.clone() };

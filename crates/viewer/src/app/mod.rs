@@ -107,7 +107,7 @@ pub struct App {
     pub toasts: Toasts,
     /// What a newcomer has tried.
     pub first_steps: FirstSteps,
-    /// Plays when nobody steers.
+    /// Plays when there is no input.
     pub tour: Tour,
     /// The body under the mouse that is being pulled.
     pub grab: Option<Grab>,

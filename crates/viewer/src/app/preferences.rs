@@ -59,7 +59,7 @@ pub struct Preferences {
     pub advanced: bool,
     /// The first steps are shown until they are done or dismissed.
     pub shows_first_steps: bool,
-    /// The tour plays when nobody steers for a while.
+    /// The tour plays when there was no input for a while.
     pub plays_tour: bool,
     /// Size of texts and buttons; 1 is that of the system. See [`Preferences::UI_SCALES`].
     pub ui_scale: f32,

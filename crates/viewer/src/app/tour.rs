@@ -1,4 +1,4 @@
-//! The tour: the pad of a script, played in the window when nobody steers for a while. Any input ends it.
+//! The tour: the pad of a script, played in the window when there was no input for a while. Any input ends it.
 
 use gamepad::Script;
 use policy_core::GamepadState;

@@ -105,7 +105,7 @@ pub(super) fn camera_modes(ui: &mut Ui, app: &App, commands: &mut Vec<ViewerComm
 
 fn start(ui: &mut Ui, chosen: &mut Preferences, commands: &mut Vec<ViewerCommand>) {
     ui.strong("Start");
-    ui.checkbox(&mut chosen.plays_tour, "Tour when nobody steers")
+    ui.checkbox(&mut chosen.plays_tour, "Tour without input")
         .on_hover_text("After 45 seconds without any input the demo shows what the character can do");
     if ui.button("Show the first steps again").on_hover_text("The list of things to try first").clicked() {
         commands.push(ViewerCommand::RepeatFirstSteps);

@@ -15,8 +15,22 @@ pub const SHADERS: [(&str, &str); 7] = [
     ("ground", concat!(include_str!("shaders/common.wgsl"), include_str!("shaders/ground.wgsl"))),
     ("contact", concat!(include_str!("shaders/common.wgsl"), include_str!("shaders/contact.wgsl"))),
     ("sky", concat!(include_str!("shaders/common.wgsl"), include_str!("shaders/sky.wgsl"))),
-    ("shape", concat!(include_str!("shaders/common.wgsl"), include_str!("shaders/shape.wgsl"))),
-    ("thing", concat!(include_str!("shaders/common.wgsl"), include_str!("shaders/thing.wgsl"))),
+    (
+        "shape",
+        concat!(
+            include_str!("shaders/common.wgsl"),
+            include_str!("shaders/placed.wgsl"),
+            include_str!("shaders/shape.wgsl")
+        ),
+    ),
+    (
+        "thing",
+        concat!(
+            include_str!("shaders/common.wgsl"),
+            include_str!("shaders/placed.wgsl"),
+            include_str!("shaders/thing.wgsl")
+        ),
+    ),
     ("ribbon", concat!(include_str!("shaders/common.wgsl"), include_str!("shaders/ribbon.wgsl"))),
 ];
 

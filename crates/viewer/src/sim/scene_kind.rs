@@ -6,7 +6,7 @@ pub enum SceneKind {
     /// Nothing: characters live apart, in either engine, on any ground. For the method.
     #[default]
     Empty,
-    /// Ramps, stairs, props and a course, in one world with those who wander.
+    /// Ramps, stairs, props and a course, in one world with characters that wander.
     Playground,
 }
 

@@ -1,4 +1,4 @@
-//! The characters and props of a playground in one world, with the course and those who wander.
+//! The characters and props of a playground in one world, with the course and the characters that wander.
 
 mod loose;
 mod pieces;

@@ -126,8 +126,8 @@ impl SteeredCharacter {
         };
     }
 
-    /// A gait that is asked for without a direction, such as a crouch, wanders. The target then leads back to where it
-    /// came to rest; `None` while it is near enough.
+    /// Without a direction a gait such as a crouch wanders off. Its target is then the place where it came to rest; `None`
+    /// while it is near that place.
     fn held_target(&mut self) -> Option<Vec2> {
         let holds = self.has_arrived() && (self.place.is_some() || self.speed() < RESTS_BELOW_MPS);
         if !holds || self.is_down() {

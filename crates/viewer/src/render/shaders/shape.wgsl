@@ -16,17 +16,8 @@ fn vs_main(
     @location(4) row_z: vec4f,
     @location(5) colour: vec4f,
 ) -> Varying {
-    let p = vec4f(position, 1.0);
-    let world = vec3f(dot(row_x, p), dot(row_y, p), dot(row_z, p));
-    // Normals go by the inverse transpose; rows of a scaled rotation divide by their squared scale.
-    let m = mat3x3f(
-        vec3f(row_x.x, row_y.x, row_z.x),
-        vec3f(row_x.y, row_y.y, row_z.y),
-        vec3f(row_x.z, row_y.z, row_z.z),
-    );
-    let scale = vec3f(dot(m[0], m[0]), dot(m[1], m[1]), dot(m[2], m[2]));
-    let turned = m * (normal / max(scale, vec3f(1e-9)));
-    return Varying(frame.clip_from_world * vec4f(world, 1.0), turned, colour, world);
+    let at = placed(position, normal, row_x, row_y, row_z);
+    return Varying(frame.clip_from_world * vec4f(at.world, 1.0), at.normal, colour, at.world);
 }
 
 @fragment
