@@ -77,7 +77,7 @@ fn length_limit(target: &str) -> &'static str {
         "pack" => "-max_len=1000000",
         "manifest" | "replay" => "-max_len=65536",
         "gltf" | "mjcf" | "clip" => "-max_len=16384",
-        "state" | "recipe" | "checkpoint" => "-max_len=8192",
+        "state" | "recipe" | "checkpoint" | "scene" => "-max_len=8192",
         _ => "-max_len=4096",
     }
 }
@@ -92,6 +92,7 @@ fn seed(root: &Path, target: &str) -> Result<()> {
         // The small pack, whose tensors the target of manifests uses.
         "pack" | "manifest" => &[("tests/golden", "safetensors")],
         "script" => &[("assets/scripts", "ron")],
+        "scene" => &[("assets/scenes", "ron")],
         "mjcf" => &[("tests/assets", "xml"), ("assets", "xml")],
         "recipe" => &[("assets/recipes", "toml"), ("assets/recipes/lineage", "toml")],
         "clip" => &[

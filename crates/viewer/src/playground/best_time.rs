@@ -56,11 +56,25 @@ impl BestTime {
         }
         let bytes = files::read(path, MOST_BYTES)
             .map_err(|source| BestTimeError::File { path: path.to_owned(), source })?;
-        let best: Option<Self> = std::str::from_utf8(&bytes).ok().and_then(|text| ron::from_str(text).ok());
+        Self::from_bytes(path, &bytes).map(Some)
+    }
+
+    /// Reads the bytes of such a file; `path` is only named in errors.
+    ///
+    /// # Errors
+    /// When they hold something else.
+    pub fn from_bytes(path: &Path, bytes: &[u8]) -> Result<Self, BestTimeError> {
+        let best: Option<Self> = std::str::from_utf8(bytes).ok().and_then(|text| ron::from_str(text).ok());
         match best {
-            Some(best) if best.secs.is_finite() && best.secs > 0.0 => Ok(Some(best)),
+            Some(best) if best.secs.is_finite() && best.secs > 0.0 => Ok(best),
             _ => Err(BestTimeError::Text { path: path.to_owned() }),
         }
+    }
+
+    /// The text of a file.
+    #[must_use]
+    pub fn to_text(&self) -> String {
+        format!("(secs: {:?}, falls: {})\n", self.secs, self.falls)
     }
 
     /// Writes it.
@@ -68,8 +82,7 @@ impl BestTime {
     /// # Errors
     /// When the file can't be written; it is then as it was.
     pub fn save(&self, path: &Path) -> Result<(), BestTimeError> {
-        let text = format!("(secs: {:?}, falls: {})\n", self.secs, self.falls);
-        files::write(path, text.as_bytes())
+        files::write(path, self.to_text().as_bytes())
             .map_err(|source| BestTimeError::File { path: path.to_owned(), source: source.into() })
     }
 
