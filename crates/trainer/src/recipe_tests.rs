@@ -101,6 +101,8 @@ fn values_out_of_range_are_named_with_their_range() {
         ("environment.reward.fall_cost", ["-1.0", "nan"]),
         ("environment.reward.speed_scale_mps", ["0.0", "inf"]),
         ("environment.command.stop_share", ["-0.1", "1.1"]),
+        ("environment.command.slow_stop_share", ["-0.1", "nan"]),
+        ("environment.command.fast_target_factor", ["0.0", "inf"]),
         ("environment.command.edge_sweep_secs", ["[0.0, 1.0]", "[1.0, nan]"]),
         ("environment.num_envs", ["0", "1000000000000"]),
         ("environment.termination.min_heights.pelvis", ["-1.0", "inf"]),

@@ -18,6 +18,12 @@ pub const DT_SECS: f32 = 1.0 / CONTROL_HZ as f32;
 /// Numbers of [`Command::intent_into`].
 pub const INTENT_LEN: usize = 2;
 
+/// Gaits below this speed stop by their target, metres per second.
+const SLOW_MPS: f32 = 0.6;
+
+/// Gaits above this speed keep their targets longer, metres per second.
+const FAST_MPS: f32 = 2.0;
+
 /// Seconds of a sweep to the end of a path and back, least and most.
 const SWEEP_SECS: [f32; 2] = [4.0, 8.0];
 
@@ -136,7 +142,7 @@ impl Command {
         rng: &mut Rng,
     ) {
         self.stick = rng.chance(config.stick_share).then_some(heading);
-        self.renew_target(config, position, Some(heading), rng);
+        self.renew_target(config, graph, (position, Some(heading)), rng);
         self.follow_stick(graph, position);
     }
 
@@ -170,7 +176,7 @@ impl Command {
     ) {
         self.target_ticks = self.target_ticks.saturating_sub(1);
         if self.target_ticks == 0 {
-            self.renew_target(config, root, None, rng);
+            self.renew_target(config, graph, (root, None), rng);
         }
         if self.rate > 0.0 {
             self.asked += (self.goal - self.asked).clamp(-self.rate, self.rate);
@@ -198,10 +204,20 @@ impl Command {
         self.follow_stick(graph, root);
     }
 
-    fn renew_target(&mut self, config: &CommandConfig, position: Vec2, heading: Option<f32>, rng: &mut Rng) {
-        let secs = rng.range(config.target_secs[0], config.target_secs[1]);
+    fn renew_target(
+        &mut self,
+        config: &CommandConfig,
+        graph: &TrainingGraph,
+        (position, heading): (Vec2, Option<f32>),
+        rng: &mut Rng,
+    ) {
+        let speed = graph.speed_mps(self.position);
+        let factor = if speed > FAST_MPS { config.fast_target_factor } else { 1.0 };
+        let secs = factor * rng.range(config.target_secs[0], config.target_secs[1]);
         self.target_ticks = (secs / DT_SECS).max(1.0) as u32;
-        self.stop = rng.chance(config.stop_share);
+        let slow = speed > 0.0 && speed < SLOW_MPS;
+        let of_slow = config.slow_stop_share.filter(|_| slow);
+        self.stop = rng.chance(of_slow.unwrap_or(config.stop_share));
         if let Some(direction) = &mut self.stick {
             // A player mostly turns by up to a quarter, and in a hurry by any angle.
             let anywhere = rng.chance(config.any_direction_share);

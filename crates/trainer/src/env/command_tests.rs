@@ -221,3 +221,29 @@ fn a_stick_turns_by_a_quarter_at_most_unless_any_direction_is_asked_for() {
     };
     assert!(most_turn(0.0) <= QUARTER + 1e-3 && most_turn(0.5) > 3.0);
 }
+
+#[test]
+fn slow_gaits_have_stops_and_fast_ones_times_of_their_own() {
+    let stops_and_secs = |speed_mps| {
+        let target_secs = [1.0, 1.0];
+        let config = CommandConfig {
+            stop_share: 0.0,
+            slow_stop_share: Some(1.0),
+            fast_target_factor: 3.0,
+            target_secs,
+            ..Default::default()
+        };
+        let node = GraphNode { speed_mps, ..edge().nodes()[0].clone() };
+        let graph = TrainingGraph::alone(vec![node], 0).unwrap();
+        let mut rng = Rng::new(8, 1);
+        let mut command = Command::start(&config, &graph, false, &mut rng);
+        command.aim(&config, &graph, (Vec2::ZERO, 0.0), &mut rng);
+        (command.stop, command.target_ticks as f32 * DT_SECS)
+    };
+    for (speed_mps, stops, secs) in
+        [(0.0, false, 1.0), (0.4, true, 1.0), (1.25, false, 1.0), (2.8, false, 3.0)]
+    {
+        let found = stops_and_secs(speed_mps);
+        assert!(found.0 == stops && (found.1 - secs).abs() < 2.0 * DT_SECS, "{speed_mps} m/s: {found:?}");
+    }
+}

@@ -20,6 +20,8 @@ const RANGES: &[(&str, f64, f64)] = &[
     ("environment.command.target_metres", 0.0, 1000.0),
     ("environment.command.target_secs", 0.0, 3600.0),
     ("environment.command.stop_share", 0.0, 1.0),
+    ("environment.command.slow_stop_share", 0.0, 1.0),
+    ("environment.command.fast_target_factor", 0.1, 100.0),
     ("environment.command.stick_share", 0.0, 1.0),
     ("environment.command.any_direction_share", 0.0, 1.0),
     ("environment.command.sweep_share", 0.0, 1.0),

@@ -14,6 +14,11 @@ pub struct CommandConfig {
     pub target_secs: [f32; 2],
     /// Share of targets that lie where the character stands.
     pub stop_share: f32,
+    /// The same share for gaits slower than 0.6 m/s, if it differs. A player stops a walk by going to Idle, a crouch by the
+    /// target alone.
+    pub slow_stop_share: Option<f32>,
+    /// Factor on `target_secs` for gaits faster than 2 m/s. Asked to turn all the time, a run has little use for its speed.
+    pub fast_target_factor: f32,
     /// Share of episodes whose target moves ahead of the character, as the stick of a pad has it.
     pub stick_share: f32,
     /// Share of a stick's new directions that are any at all; the others turn by at most 90 degrees.
@@ -42,6 +47,8 @@ impl Default for CommandConfig {
             target_metres: [1.0, 10.0],
             target_secs: [2.0, 7.0],
             stop_share: 0.15,
+            slow_stop_share: None,
+            fast_target_factor: 1.0,
             stick_share: 0.0,
             any_direction_share: 0.1,
             sweep_share: 0.0,
