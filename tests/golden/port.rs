@@ -153,7 +153,7 @@ impl PortGolden {
 
 fn controller(pack: &Arc<CharacterPack>) -> Controller {
     // A port may leave steering out: what a policy is shown is the target as it is.
-    let config = ControllerConfig { steering: None, ..ControllerConfig::default() };
+    let config = ControllerConfig { steering: None, turn_assist: None, ..ControllerConfig::default() };
     Controller::with_config(Arc::clone(pack), config)
 }
 

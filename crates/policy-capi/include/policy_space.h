@@ -321,12 +321,16 @@ typedef struct PsConfig {
   int32_t start_node;
   // Time over which joint targets pass from one policy to the other when a skill starts or ends, seconds; 0 for a jump.
   float handover_secs;
-  // Not 0: slow down fast gaits while the target lies far off the heading.
+  // Not 0: fast gaits slow down and slow ones speed up while the target lies far off the heading.
   int32_t turn_assist;
-  // Angle from which the turn assist acts, radians.
+  // Angle from which the turn assist slows a faster gait down, radians.
   float turn_begin_radians;
-  // Angle from which it acts fully, radians; more than turn_begin_radians.
+  // Angle from which it does so fully, radians; more than turn_begin_radians.
   float turn_full_radians;
+  // Angle from which the turn assist speeds a slower gait up, radians.
+  float turn_slow_begin_radians;
+  // Angle from which it does so fully, radians; more than turn_slow_begin_radians.
+  float turn_slow_full_radians;
   // Not 0: hold the course and lead into turns.
   int32_t steering;
   // How much further the policy is asked to turn, for each radian between the course and the target; at least 0.

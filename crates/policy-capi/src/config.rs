@@ -47,12 +47,16 @@ pub struct PsConfig {
     pub start_node: i32,
     /// Time over which joint targets pass from one policy to the other when a skill starts or ends, seconds; 0 for a jump.
     pub handover_secs: f32,
-    /// Not 0: slow down fast gaits while the target lies far off the heading.
+    /// Not 0: fast gaits slow down and slow ones speed up while the target lies far off the heading.
     pub turn_assist: i32,
-    /// Angle from which the turn assist acts, radians.
+    /// Angle from which the turn assist slows a faster gait down, radians.
     pub turn_begin_radians: f32,
-    /// Angle from which it acts fully, radians; more than turn_begin_radians.
+    /// Angle from which it does so fully, radians; more than turn_begin_radians.
     pub turn_full_radians: f32,
+    /// Angle from which the turn assist speeds a slower gait up, radians.
+    pub turn_slow_begin_radians: f32,
+    /// Angle from which it does so fully, radians; more than turn_slow_begin_radians.
+    pub turn_slow_full_radians: f32,
     /// Not 0: hold the course and lead into turns.
     pub steering: i32,
     /// How much further the policy is asked to turn, for each radian between the course and the target; at least 0.
@@ -87,6 +91,8 @@ impl Default for PsConfig {
             turn_assist: config.turn_assist.is_some().into(),
             turn_begin_radians: turn.begin_radians,
             turn_full_radians: turn.full_radians,
+            turn_slow_begin_radians: turn.slow_begin_radians,
+            turn_slow_full_radians: turn.slow_full_radians,
             steering: config.steering.is_some().into(),
             steering_lead: steering.lead,
             steering_trim_per_second: steering.trim_per_second,
@@ -104,11 +110,17 @@ impl PsConfig {
         let turn = TurnAssist {
             begin_radians: finite("turn_begin_radians", self.turn_begin_radians)?,
             full_radians: finite("turn_full_radians", self.turn_full_radians)?,
+            slow_begin_radians: finite("turn_slow_begin_radians", self.turn_slow_begin_radians)?,
+            slow_full_radians: finite("turn_slow_full_radians", self.turn_slow_full_radians)?,
         };
-        if self.turn_assist != 0 && turn.begin_radians >= turn.full_radians {
-            let TurnAssist { begin_radians, full_radians } = turn;
-            let text = format_args!("expected turn_full_radians above {begin_radians}, found {full_radians}");
-            return Err(fail(PsStatus::BadNumber, text));
+        for (field, begin, full) in [
+            ("turn_full_radians", turn.begin_radians, turn.full_radians),
+            ("turn_slow_full_radians", turn.slow_begin_radians, turn.slow_full_radians),
+        ] {
+            if self.turn_assist != 0 && begin >= full {
+                let text = format_args!("expected {field} above {begin}, found {full}");
+                return Err(fail(PsStatus::BadNumber, text));
+            }
         }
         let steering = Steering {
             lead: not_negative("steering_lead", self.steering_lead)?,

@@ -211,6 +211,9 @@ fn bad_packs_files_names_and_indices_are_errors() {
     let config = PsConfig { turn_assist: 1, turn_full_radians: 0.1, ..PsConfig::default() };
     assert!(ps_controller_new(Some(&pack), Some(&config)).is_none());
     failed(ps_last_status(), PsStatus::BadNumber, "turn_full_radians");
+    let config = PsConfig { turn_assist: 1, turn_slow_begin_radians: 3.0, ..PsConfig::default() };
+    assert!(ps_controller_new(Some(&pack), Some(&config)).is_none());
+    failed(ps_last_status(), PsStatus::BadNumber, "turn_slow_full_radians above 3");
     let config = PsConfig { steering_lead: f32::NAN, ..PsConfig::default() };
     assert!(ps_controller_new(Some(&pack), Some(&config)).is_none());
     failed(ps_last_status(), PsStatus::BadNumber, "steering_lead");

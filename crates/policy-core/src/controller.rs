@@ -249,9 +249,11 @@ impl Controller {
         self.run_skill(state, heights, dt);
         self.detect_fall(heights, dt);
         self.request_skill(command.skill, state, heights, dt);
-        self.travel(state, command, heights, dt);
-        self.choose_blend(command);
-        self.observe(state, command, dt);
+        let assist = self.config.turn_assist.filter(|_| self.state.report.pending_skill.is_none());
+        let command = assist.map_or(*command, |a| a.adjusted(self.pack.graph(), state, command));
+        self.travel(&command, heights, dt);
+        self.choose_blend(&command);
+        self.observe(state, &command, dt);
         true
     }
 
@@ -284,7 +286,7 @@ impl Controller {
 
     /// Moves along the graph: to the nearest node that a pending skill may start from, else to the command's goal. Leaving a
     /// low gait requires standing first.
-    fn travel(&mut self, state: &CharacterState, command: &Command, heights: Heights, dt: f32) {
+    fn travel(&mut self, command: &Command, heights: Heights, dt: f32) {
         if self.state.report.skill.is_some() {
             return;
         }
@@ -297,11 +299,7 @@ impl Controller {
                 let nearest = entry.iter().min_by(|a, b| cost(a).total_cmp(&cost(b)));
                 nearest.map(|&node| GraphPosition::node(node))
             }
-            None => {
-                let assist = self.config.turn_assist;
-                let goal = assist.map_or(command.goal, |a| a.adjusted(graph, state, command));
-                goal.position(graph)
-            }
+            None => command.goal.position(graph),
         };
         report.goal = graph.settled(goal.unwrap_or(report.position), report.position);
         let mut next = report.position;

@@ -232,17 +232,25 @@ fn turn_assist_slows_fast_gaits_down_and_leaves_a_crouch() {
     let coordinate = |path: usize, coordinate: f32, target: Vec2| {
         let goal = Goal::Path { path: PathId::new(path), coordinate };
         let command = Command { target: Some(target), goal, ..Command::default() };
-        match TurnAssist::default().adjusted(pack.graph(), &standing(), &command) {
+        let adjusted = TurnAssist::default().adjusted(pack.graph(), &standing(), &command);
+        let coordinate = match adjusted.goal {
             Goal::Path { coordinate, .. } => coordinate,
             _ => f32::NAN,
-        }
+        };
+        (coordinate, adjusted.target.unwrap())
     };
-    let (ahead, aside, behind) = (Vec2::new(5.0, 0.0), Vec2::new(2.9, 4.1), Vec2::new(-5.0, 0.1));
+    let further = |path, at, target| coordinate(path, at, target).1;
+    let coordinate = |path, at, target| coordinate(path, at, target).0;
+    let (ahead, aside, behind) = (Vec2::new(5.0, 0.0), Vec2::new(3.5, 3.5), Vec2::new(-5.0, 0.1));
     assert_eq!([ahead, behind].map(|t| coordinate(0, 3.0, t)), [3.0, 1.0]);
     assert!((1.2..2.9).contains(&coordinate(0, 3.0, aside)));
     assert_eq!([ahead, behind].map(|t| coordinate(0, 0.4, t)), [0.4, 1.0]);
     assert_eq!([1.5, 2.0, 3.0].map(|c| coordinate(1, c, behind)), [1.5, 2.0, 3.0], "a crouch stays a crouch");
     assert_eq!(coordinate(0, 3.0, Vec2::ZERO), 3.0);
+    // As if the stick were pushed as far as the coordinate is raised.
+    assert_eq!([0.5, 1.0, 3.0].map(|c| further(0, c, behind)), [2.0 * behind, behind, behind]);
+    assert_eq!(further(0, 0.5, ahead), ahead);
+    assert_eq!(further(0, 0.0, behind), 5.0 * behind, "bounded at a coordinate of zero");
 }
 
 #[test]
