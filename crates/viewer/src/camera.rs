@@ -1,12 +1,14 @@
 //! Cameras: orbit, follow, fixed, first person and free. One rig for the window and for pictures.
 
 mod mode;
+mod room;
 
 use glam::{Vec2, Vec3};
 use policy_core::Heading;
 
 use crate::render::View;
 pub use mode::CameraMode;
+use room::Room;
 
 /// A camera that looks at a character.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -27,6 +29,8 @@ pub struct Camera {
     head: Vec3,
     /// Height of the character's root body, against that of a person.
     size: f32,
+    /// How far back it may stand.
+    room: Room,
 }
 
 /// Height of the root body of a standing person, metres.
@@ -43,6 +47,7 @@ impl Default for Camera {
             eye: Vec3::ZERO,
             head: Vec3::new(0.0, 0.0, 1.5),
             size: 1.0,
+            room: Room::default(),
         };
         camera.eye = camera.orbit_eye(0.0);
         camera
@@ -156,6 +161,22 @@ impl Camera {
         }
     }
 
+    /// The line on which it looks at the character: from the character, to where it would stand if nothing were in the way,
+    /// metres. `None` for a camera that does not circle.
+    #[must_use]
+    pub fn line(&self) -> Option<(Vec3, Vec3)> {
+        let free = Self { room: Room::default(), ..*self };
+        self.mode.circles().then(|| (self.target, free.orbit_eye(0.0) - self.target))
+    }
+
+    /// Takes `dt` seconds in which something hides the character from `hit` metres along [`Camera::line`] on.
+    pub fn keep_clear(&mut self, dt: f32, hit: Option<f32>) {
+        self.room.advance(dt, hit, self.distance);
+        if self.mode.circles() {
+            self.eye = self.orbit_eye(0.0);
+        }
+    }
+
     /// Goes at once to where it would come to rest.
     pub fn settle(&mut self, root: Vec3, ground: f32) {
         self.advance(100.0, [0.0; 2], root, Heading::from_angle(self.yaw), ground);
@@ -193,7 +214,7 @@ impl Camera {
     fn orbit_eye(&self, around: f32) -> Vec3 {
         let (sin, cos) = (self.yaw + around).sin_cos();
         let back = Vec3::new(-cos * self.pitch.cos(), -sin * self.pitch.cos(), self.pitch.sin());
-        let mut eye = self.target + back * self.distance;
+        let mut eye = self.target + back * self.room.limit(self.distance);
         eye.z = eye.z.max(LEAST_HEIGHT_M);
         eye
     }

@@ -323,3 +323,24 @@ fn a_finished_race_keeps_its_best_time_beside_the_settings() {
     let file = BestTime::file_beside(&folder.path().join("layout.ron"), "playground");
     assert_eq!(BestTime::load(&file).unwrap(), Some(best));
 }
+
+#[test]
+fn the_camera_stays_before_walls_and_other_characters() {
+    let mut app = App::new(playground(2), PanelLayout::default());
+    let distance_at = |app: &mut App, at: Vec2| {
+        assert!(app.sim.carry(0, at));
+        app.camera.reset(Heading::FORWARD);
+        (0..300).for_each(|_| app.follow(1.0 / 60.0, 1.0));
+        let view = app.camera.view(0.0);
+        view.target.distance(view.eye)
+    };
+    let (open, beside_the_gate) = (Vec2::new(21.0, -8.0), Vec2::new(20.0, 2.0));
+    let free = distance_at(&mut app, open);
+    assert!((free - 3.6).abs() < 0.05, "nothing is in the way: {free} m");
+    // Its wall is at x = 19, from 0.8 to 3.2 m in y.
+    let near = distance_at(&mut app, beside_the_gate);
+    assert!((0.55..0.95).contains(&near), "a wall 0.9 m behind it: {near} m");
+    assert!(app.sim.carry(1, open - 1.8 * Vec2::X));
+    let near = distance_at(&mut app, open);
+    assert!((0.9..1.8).contains(&near), "another character 1.8 m behind it: {near} m");
+}

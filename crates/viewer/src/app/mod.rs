@@ -239,6 +239,11 @@ impl App {
         let stick = self.layout.preferences.stick(input.right_stick);
         self.camera.advance(dt, stick, root, heading, ground);
         self.camera.follow_head(dt, self.head(alpha));
+        let hit = self
+            .camera
+            .line()
+            .and_then(|(from, line)| self.sim.shared_mut()?.hidden_at(from, line, line.length()));
+        self.camera.keep_clear(dt, hit);
         self.camera.fly(dt, self.keys.flight());
     }
 

@@ -2,6 +2,7 @@
 
 mod loose;
 mod pieces;
+mod sight;
 mod wishes;
 
 use std::sync::Arc;
