@@ -2,7 +2,8 @@
 //!
 //! The same policies run here that were trained in MuJoCo, and the functions have the names of physics-bridge where
 //! they mean the same. A [`Model`] is an immutable description, made of an MJCF. An [`Articulation`] is one character
-//! inside any Rapier world, such as a game's. A [`Character`] is one character alone in a world of its own.
+//! inside any Rapier world, such as a game's. A [`Character`] is one character alone in a world of its own. A [`World`] has
+//! several of them, and props, that touch each other.
 //!
 //! ```
 //! # fn main() -> Result<(), Box<dyn std::error::Error>> {
@@ -51,12 +52,15 @@ mod character;
 mod mjcf;
 mod model;
 mod model_error;
+mod saved;
 mod skeleton;
+mod world;
 
 pub use articulation::{Articulation, Drive, PlaceError, Removed, Sets};
 pub use character::{Cause, Character, Diverged, ModelMismatch, Snapshot, SnapshotMismatch};
 pub use model::Model;
 pub use model_error::ModelError;
+pub use world::{PropShape, World, WorldError, WorldSnapshot};
 /// What policy-core says of every physics of a character.
 pub use policy_core::contract::{
     CONTROL_HZ, HeightField, MAX_DEPTH_M, MAX_DISTANCE_M, MAX_PUSHED_MPS, MAX_SPEED_MPS, MAX_SPIN_RADPS,
