@@ -39,8 +39,8 @@ pub enum ArenaError {
         /// Pads.
         found: usize,
     },
-    /// The state is of an arena of other players or of another pack.
-    #[error("expected a state of an arena of the same pack and players, found another")]
+    /// The state was saved by another arena.
+    #[error("expected a state that this arena saved, found one of another")]
     State,
     /// A controller's part of the state.
     #[error(transparent)]

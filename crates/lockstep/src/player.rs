@@ -95,8 +95,8 @@ impl Player {
     /// The push of a shove; `None` for a character that lies or flies.
     pub(crate) fn shoved_along(&self, direction: Vec2) -> Option<(BodyId, Vec3, f32)> {
         let root = self.state.root();
-        let stands = self.state.root_height() > self.lying_m
-            && root.linear_velocity.length() < SHOVED_BELOW_MPS;
+        let stands =
+            self.state.root_height() > self.lying_m && root.linear_velocity.length() < SHOVED_BELOW_MPS;
         stands.then(|| (self.shoved, (direction * SHOVE_NEWTON).extend(0.0), SHOVE_SECS))
     }
 

@@ -36,7 +36,7 @@ impl Arena {
     /// Returns to a state: the same pads give the same bits again. Allocates.
     ///
     /// # Errors
-    /// When the state is of an arena of other players or another pack; this one is then unchanged.
+    /// When another arena saved the state; this one is then unchanged.
     pub fn restore(&mut self, state: &ArenaState) -> Result<(), ArenaError> {
         let fits = self.players.len() == state.players.len()
             && self.players.iter().zip(&state.players).all(|(player, saved)| player.fits(saved));

@@ -36,13 +36,13 @@ pub fn script_pad(tick: u32, player: usize) -> Pad {
 /// What was seen of the first player while the script ran.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Seen {
-    /// Greatest horizontal speed, metres per second.
+    /// Greatest horizontal speed before the roll, metres per second.
     pub top_speed_mps: f32,
     /// The skill `roll` began.
     pub rolled: bool,
-    /// It lay on the ground.
+    /// It lay on the ground, and the pack's skill to get up began.
     pub fell: bool,
-    /// After that it stood again.
+    /// After that skill it stood again.
     pub got_up: bool,
 }
 
@@ -50,11 +50,14 @@ impl Seen {
     /// Looks at an arena after a tick.
     pub fn look(&mut self, arena: &Arena) {
         let Some(player) = arena.player(0) else { return };
-        let velocity = player.state.root().linear_velocity.truncate();
-        self.top_speed_mps = self.top_speed_mps.max(velocity.length());
         let roll = arena.pack().skill_named("roll");
-        self.rolled |= roll.is_some() && player.report.skill_started == roll;
-        self.fell |= player.report.fallen;
-        self.got_up |= self.fell && !player.report.fallen && player.state.root_height() > 0.75;
+        let begun = player.report.skill_started;
+        self.rolled |= begun.is_some() && begun == roll;
+        if !self.rolled {
+            let velocity = player.state.root().linear_velocity.truncate();
+            self.top_speed_mps = self.top_speed_mps.max(velocity.length());
+        }
+        self.fell |= begun.is_some() && begun == arena.pack().recovery();
+        self.got_up |= self.fell && player.report.skill.is_none() && player.state.root_height() > 0.75;
     }
 }

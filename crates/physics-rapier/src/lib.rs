@@ -60,7 +60,6 @@ pub use articulation::{Articulation, Drive, PlaceError, Removed, Sets};
 pub use character::{Cause, Character, Diverged, ModelMismatch, Snapshot, SnapshotMismatch};
 pub use model::Model;
 pub use model_error::ModelError;
-pub use world::{PropShape, World, WorldError, WorldSnapshot};
 /// What policy-core says of every physics of a character.
 pub use policy_core::contract::{
     CONTROL_HZ, HeightField, MAX_DEPTH_M, MAX_DISTANCE_M, MAX_PUSHED_MPS, MAX_SPEED_MPS, MAX_SPIN_RADPS,
@@ -68,3 +67,4 @@ pub use policy_core::contract::{
 };
 /// Rapier as this crate uses it.
 pub use rapier3d;
+pub use world::{PropShape, World, WorldError, WorldSnapshot};

@@ -183,13 +183,7 @@ impl World {
     ///
     /// # Errors
     /// When there is no such character or body, or the push is out of its bounds.
-    pub fn push(
-        &mut self,
-        character: usize,
-        body: BodyId,
-        force: Vec3,
-        secs: f32,
-    ) -> Result<(), WorldError> {
+    pub fn push(&mut self, character: usize, body: BodyId, force: Vec3, secs: f32) -> Result<(), WorldError> {
         let dt_secs = self.world.integration_parameters.dt;
         Ok(resident_mut(&mut self.residents, character)?.pushes.push(body, force, secs, dt_secs)?)
     }
@@ -229,7 +223,11 @@ impl World {
 
     fn resident(&self, character: usize) -> Result<&Resident, WorldError> {
         let found = self.residents.len();
-        self.residents.get(character).ok_or(WorldError::Missing { what: "character", index: character, found })
+        self.residents.get(character).ok_or(WorldError::Missing {
+            what: "character",
+            index: character,
+            found,
+        })
     }
 }
 

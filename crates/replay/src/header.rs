@@ -37,8 +37,7 @@ impl Header {
         let players = usize::from(self.players);
         field("players", "1 to 8", players.to_string(), (1..=MOST_PLAYERS).contains(&players))?;
         field("hash_every", "1 or more ticks", self.hash_every.to_string(), self.hash_every > 0)?;
-        let known =
-            |byte: u8| byte.is_ascii_lowercase() || byte.is_ascii_digit() || b"-./".contains(&byte);
+        let known = |byte: u8| byte.is_ascii_lowercase() || byte.is_ascii_digit() || b"-./".contains(&byte);
         let sized = (1..=MOST_SCENE_BYTES).contains(&self.scene.len());
         let found = self.scene.chars().take(MOST_SCENE_BYTES).collect::<String>();
         field(

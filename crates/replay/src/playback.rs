@@ -95,9 +95,7 @@ impl Playback {
             _ => None,
         };
         match recorded {
-            Some(expected) if expected != found => {
-                Err(Mismatch { tick, equal: self.equal, expected, found })
-            }
+            Some(expected) if expected != found => Err(Mismatch { tick, equal: self.equal, expected, found }),
             Some(_) => {
                 self.equal = tick;
                 Ok(())

@@ -73,7 +73,8 @@ proptest! {
 
 #[test]
 fn every_damaged_byte_is_found() {
-    let bytes = recorded(2, 70, |tick, player| Pad { triggers: [tick as u8, player], ..Pad::default() }).to_bytes();
+    let bytes =
+        recorded(2, 70, |tick, player| Pad { triggers: [tick as u8, player], ..Pad::default() }).to_bytes();
     for at in 0..bytes.len() {
         let mut broken = bytes.clone();
         broken[at] ^= 0x10;
@@ -143,7 +144,8 @@ fn playing_stops_at_the_first_hash_that_differs() {
 fn a_held_stick_takes_few_bytes_and_a_stick_that_moves_fits_a_link() {
     let held = recorded(1, 18_000, |_, _| Pad { left_stick: [0, 127], ..Pad::default() });
     assert!(held.to_bytes().len() < 4900, "mostly hashes");
-    let moved = recorded(1, 600, |tick, _| Pad { left_stick: [tick as i8, 100], camera: 77, ..Pad::default() });
+    let moved =
+        recorded(1, 600, |tick, _| Pad { left_stick: [tick as i8, 100], camera: 77, ..Pad::default() });
     assert!(moved.to_link().unwrap().len() < 3000);
     let long = recorded(1, 9000, |tick, _| Pad { left_stick: [tick as i8, 100], ..Pad::default() });
     assert!(matches!(long.to_link(), Err(ReplayError::LongLink { .. })));
