@@ -6,6 +6,7 @@ mod bench;
 mod capi;
 mod checks;
 mod demo;
+mod determinism;
 mod fuzz;
 mod hostile;
 mod onnx;
@@ -61,6 +62,10 @@ enum Verb {
     ///
     /// ONNX Runtime comes from its Python wheel, pinned by hash. tract takes some minutes to compile.
     Onnx,
+    /// Compare the states of one fixed run in debug and release, with AVX2 and without, under wasm32 and on arm64.
+    ///
+    /// wasm32 needs Node.js, arm64 a cross compiler and an emulator; what is missing is skipped and named.
+    Determinism(determinism::DeterminismArgs),
     /// Feed random bytes to the parsers. Needs a nightly toolchain and cargo-fuzz.
     Fuzz(fuzz::FuzzArgs),
     /// Give broken files to every reader, and report panics, aborts, hangs and too much memory.
@@ -138,6 +143,7 @@ fn dispatch(verb: Verb) -> Result<ExitCode> {
             setup::prepare(&workspace, Purpose::Demo, true)?;
             onnx::run(&workspace)?;
         }
+        Verb::Determinism(arguments) => determinism::run(&workspace, &arguments)?,
         Verb::Fuzz(arguments) => fuzz::run(&workspace, &arguments)?,
         Verb::Hostile(arguments) => hostile::run(&workspace, &arguments)?,
         Verb::Pad { arguments } => {

@@ -19,6 +19,7 @@ pub mod playground;
 pub mod pose_clip;
 pub mod recorder;
 pub mod render;
+pub mod replays;
 pub mod scene_setup;
 pub mod signals;
 pub mod sim;

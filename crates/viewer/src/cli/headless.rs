@@ -7,6 +7,7 @@ use anyhow::{Context as _, bail};
 
 use super::open::open;
 use super::pad_input::PadInput;
+use super::replay_files;
 use super::report::{RaceReport, Report};
 use super::{Demo, MOST_SECS};
 use crate::analysis::Analysis;
@@ -86,16 +87,23 @@ impl<'a> Headless<'a> {
                 break;
             }
             run.tick(tick)?;
+            if run.app.replay_stopped.is_some() {
+                break;
+            }
         }
+        replay_files::end(demo, &run.app)?;
         Ok(run)
     }
 
     fn new(demo: &'a Demo) -> anyhow::Result<Self> {
         let input = PadInput::load(demo)?;
-        let opened = open(demo)?;
+        let (chosen, replay) = replay_files::chosen(demo)?;
+        let opened = open(&chosen)?;
         let mut app = opened.app;
+        replay_files::begin(demo, replay.as_ref(), &mut app)?;
+        let played = replay.map(|replay| f64::from(replay.ticks()) * f64::from(app.sim.tick_secs()));
         let clip = app.sim.playback().map(Playback::duration);
-        let seconds = demo.seconds.or(clip).or(input.duration()).unwrap_or(10.0);
+        let seconds = demo.seconds.or(clip).or(played).or(input.duration()).unwrap_or(10.0);
         if seconds > MOST_SECS {
             bail!(
                 "expected a script or recording of at most {MOST_SECS} s, found {seconds} s; --seconds plays a part"
