@@ -150,3 +150,21 @@ fn a_held_stick_takes_few_bytes_and_a_stick_that_moves_fits_a_link() {
     let long = recorded(1, 9000, |tick, _| Pad { left_stick: [tick as i8, 100], ..Pad::default() });
     assert!(matches!(long.to_link(), Err(ReplayError::LongLink { .. })));
 }
+
+#[test]
+fn the_seeds_of_the_fuzzer_are_replays() {
+    for (file, link) in [
+        (
+            &include_bytes!("../../../fuzz/seeds/pad_replay/one.replay")[..],
+            include_str!("../../../fuzz/seeds/replay_link/one.txt"),
+        ),
+        (
+            &include_bytes!("../../../fuzz/seeds/pad_replay/two.replay")[..],
+            include_str!("../../../fuzz/seeds/replay_link/two.txt"),
+        ),
+    ] {
+        let replay = Replay::from_bytes(file).unwrap();
+        assert_eq!(replay.to_bytes(), file, "the format has not changed");
+        assert_eq!(replay.to_link().unwrap(), link);
+    }
+}
