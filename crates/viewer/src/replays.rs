@@ -142,9 +142,12 @@ mod tests {
     fn scenes_of_the_demo_are_read_and_others_refused() {
         let setting = Setting::from_header(&header("empty/rapier/flat/3/actions")).unwrap();
         assert_eq!((setting.engine, setting.characters), (Engine::Rapier, 3));
-        for wrong in
-            ["arena/4", "empty/rapier/flat/0/actions", "empty/rapier/flat/3/actions/x", "moon/rapier/flat/3/actions"]
-        {
+        for wrong in [
+            "arena/4",
+            "empty/rapier/flat/0/actions",
+            "empty/rapier/flat/3/actions/x",
+            "moon/rapier/flat/3/actions",
+        ] {
             let said = Setting::from_header(&header(wrong)).unwrap_err().to_string();
             assert!(said.contains("empty/rapier/flat/1/parameters") && said.contains(wrong), "{said}");
         }

@@ -298,9 +298,8 @@ fn a_replay_repeats_the_run_and_stops_where_it_differs() {
     let path = folder.path().join("walk.replay");
     let recorded =
         report(folder.path(), "a.json", &["--physics", "rapier", "--record-replay", "walk.replay"]);
-    let play = |name: &str, report: &str| {
-        run(folder.path(), &["--headless", "--replay", name, "--report", report])
-    };
+    let play =
+        |name: &str, report: &str| run(folder.path(), &["--headless", "--replay", name, "--report", report]);
     let played = play("walk.replay", "b.json");
     assert!(played.status.success(), "{}", String::from_utf8_lossy(&played.stderr));
     let of = |name: &str| -> serde_json::Value {

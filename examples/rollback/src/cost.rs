@@ -62,7 +62,8 @@ pub fn measure(players: usize, times: u32) -> anyhow::Result<Cost> {
 /// # Errors
 /// As [`measure`].
 pub fn table() -> anyhow::Result<String> {
-    let mut out = String::from("| characters | save | restore | 8 frames again, each saved |\n|---|---|---|---|\n");
+    let mut out =
+        String::from("| characters | save | restore | 8 frames again, each saved |\n|---|---|---|---|\n");
     for players in CHARACTERS {
         let cost = measure(players, TIMES)?;
         let us = |time: Duration| format!("{} us", time.as_micros());

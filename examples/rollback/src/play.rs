@@ -86,7 +86,8 @@ pub fn run(frames: u32, weather: Weather, paced: bool) -> anyhow::Result<Played>
             }
         }
         next += Duration::from_secs(1) / FPS as u32;
-        let pause = if paced { next.saturating_duration_since(Instant::now()) } else { Duration::from_millis(1) };
+        let pause =
+            if paced { next.saturating_duration_since(Instant::now()) } else { Duration::from_millis(1) };
         std::thread::sleep(pause);
     }
     let confirmed = sessions.iter().map(P2PSession::confirmed_frame).min().unwrap_or(0);
@@ -94,7 +95,10 @@ pub fn run(frames: u32, weather: Weather, paced: bool) -> anyhow::Result<Played>
     // GGRS's own report of a difference comes a second late.
     for (frame, hash) in first.hashes().range(..=confirmed) {
         let other = second.hashes().get(frame);
-        ensure!(other == Some(hash), "in frame {frame}: expected the state {hash:016x} of both, found {other:016x?}");
+        ensure!(
+            other == Some(hash),
+            "in frame {frame}: expected the state {hash:016x} of both, found {other:016x?}"
+        );
     }
     let hash = first.hashes().range(..=confirmed).next_back().map_or(0, |(_, hash)| *hash);
     let wire = wire.borrow();
@@ -105,7 +109,10 @@ pub fn run(frames: u32, weather: Weather, paced: bool) -> anyhow::Result<Played>
     Ok(Played { confirmed, players: [of(0), of(1)], packets: [wire.sent, wire.lost], hash })
 }
 
-fn session(index: usize, wire: &std::rc::Rc<std::cell::RefCell<Wire>>) -> Result<P2PSession<Netplay>, GgrsError> {
+fn session(
+    index: usize,
+    wire: &std::rc::Rc<std::cell::RefCell<Wire>>,
+) -> Result<P2PSession<Netplay>, GgrsError> {
     let other = 1 - index;
     SessionBuilder::<Netplay>::new()
         .with_num_players(2)?

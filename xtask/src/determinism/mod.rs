@@ -37,7 +37,8 @@ pub fn run(workspace: &Workspace, arguments: &DeterminismArgs) -> Result<()> {
         ensure!(names.contains(&name.as_str()), "expected one of {}, found {name}", names.join(", "));
     }
     let mut report = Report::default();
-    for way in WAYS.iter().filter(|way| arguments.only.is_empty() || arguments.only.iter().any(|n| n == way.name))
+    for way in
+        WAYS.iter().filter(|way| arguments.only.is_empty() || arguments.only.iter().any(|n| n == way.name))
     {
         let needed = !arguments.only.is_empty();
         let lacks = (way.lacks)(workspace);
@@ -50,7 +51,8 @@ pub fn run(workspace: &Workspace, arguments: &DeterminismArgs) -> Result<()> {
         eprintln!("xtask: {}", way.name);
         for threads in way.threads {
             let text = (way.run)(workspace, arguments.players, *threads)?;
-            let name = if *threads > 1 { format!("{}, {threads} threads", way.name) } else { way.name.into() };
+            let name =
+                if *threads > 1 { format!("{}, {threads} threads", way.name) } else { way.name.into() };
             report.outcomes.push(Outcome::of(&name, &text)?);
         }
     }

@@ -81,11 +81,17 @@ impl Report {
                     second + 1
                 );
             }
-            ensure!(first.last == other.last && first.hashes.len() == other.hashes.len(), "{name} ends otherwise");
+            ensure!(
+                first.last == other.last && first.hashes.len() == other.hashes.len(),
+                "{name} ends otherwise"
+            );
         }
         ensure!(others > 0, "expected two ways to compare, found {first_name} alone");
         for (name, ran) in self.ran() {
-            ensure!(ran.complete != Some(false), "{name}: expected a roll, a fall and a get-up, found not all");
+            ensure!(
+                ran.complete != Some(false),
+                "{name}: expected a roll, a fall and a get-up, found not all"
+            );
         }
         Ok(())
     }

@@ -111,7 +111,8 @@ fn wasm(workspace: &Workspace, players: u8, _: u8) -> Result<String> {
 }
 
 fn lacks_arm(_: &Workspace) -> Option<String> {
-    let missing = [ARM_LINKER, ARM_EMULATOR].into_iter().find(|name| !answers(Command::new(name).arg("--version")));
+    let missing =
+        [ARM_LINKER, ARM_EMULATOR].into_iter().find(|name| !answers(Command::new(name).arg("--version")));
     missing.map(|name| {
         format!("expected {name}, found none; Debian's packages gcc-aarch64-linux-gnu, libc6-dev-arm64-cross and qemu-user have it")
     })
