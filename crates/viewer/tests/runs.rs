@@ -307,7 +307,8 @@ fn a_replay_repeats_the_run_and_stops_where_it_differs() {
     };
     let again = of("b.json");
     assert_eq!(again["state_hash"], recorded["state_hash"]);
-    assert_eq!((&again["physics"], &again["seconds"]), (&"rapier".into(), &recorded["seconds"]));
+    assert_eq!(again["physics"], "rapier");
+    assert!((again["seconds"].as_f64().unwrap() - 4.0).abs() < 1e-5, "as long as it was: {again}");
 
     // Other presses with the recorded hashes.
     let bytes = std::fs::read(&path).unwrap();
