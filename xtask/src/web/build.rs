@@ -14,7 +14,7 @@ const TARGET: &str = "wasm32-unknown-unknown";
 const MODULE: &str = "policy_space_web";
 const BINDER: &str = "wasm-bindgen";
 
-/// What a file of the page is called there.
+/// The folder of the page, below the root.
 const FOLDER: &str = "out/web";
 
 /// Builds everything and returns the folder of the page.

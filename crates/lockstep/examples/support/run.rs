@@ -23,7 +23,7 @@ pub fn script(pack: &[u8], players: usize) -> Result<Ran, ArenaError> {
         let pads: Vec<Pad> = (0..players).map(|player| script_pad(tick, player)).collect();
         arena.tick(&pads)?;
         ran.seen.look(&arena);
-        if (tick + 1) % every == 0 {
+        if (tick + 1).is_multiple_of(every) {
             ran.hashes.push(arena.hash());
         }
     }
