@@ -6,10 +6,12 @@ mod bench;
 mod capi;
 mod checks;
 mod demo;
+mod determinism;
 mod fuzz;
 mod hostile;
 mod onnx;
 mod setup;
+mod web;
 mod workspace;
 
 use std::ffi::OsString;
@@ -61,6 +63,10 @@ enum Verb {
     ///
     /// ONNX Runtime comes from its Python wheel, pinned by hash. tract takes some minutes to compile.
     Onnx,
+    /// Compare the states of one fixed run in debug and release, with AVX2 and without, under wasm32 and on arm64.
+    ///
+    /// wasm32 needs Node.js, arm64 a cross compiler and an emulator; what is missing is skipped and named.
+    Determinism(determinism::DeterminismArgs),
     /// Feed random bytes to the parsers. Needs a nightly toolchain and cargo-fuzz.
     Fuzz(fuzz::FuzzArgs),
     /// Give broken files to every reader, and report panics, aborts, hangs and too much memory.
@@ -68,6 +74,10 @@ enum Verb {
     /// Each file is a sound file of the project with a fault put in. The time and memory of each reader are bounded.
     /// One file of each finding is kept in out/hostile.
     Hostile(hostile::HostileArgs),
+    /// Build the demo as a web page in out/web and serve it on this machine.
+    ///
+    /// Installs the target wasm32-unknown-unknown, and the binding generator in third_party/tools, by itself.
+    Web(web::WebArgs),
     /// List and test connected gamepads: `cargo xtask pad doctor`.
     Pad {
         /// Arguments of the program `pad`. `doctor` lists devices and shows what they report.
@@ -138,8 +148,10 @@ fn dispatch(verb: Verb) -> Result<ExitCode> {
             setup::prepare(&workspace, Purpose::Demo, true)?;
             onnx::run(&workspace)?;
         }
+        Verb::Determinism(arguments) => determinism::run(&workspace, &arguments)?,
         Verb::Fuzz(arguments) => fuzz::run(&workspace, &arguments)?,
         Verb::Hostile(arguments) => hostile::run(&workspace, &arguments)?,
+        Verb::Web(arguments) => web::run(&workspace, &arguments)?,
         Verb::Pad { arguments } => {
             let mut pad = workspace.cargo();
             pad.args(["run", "--quiet", "-p", "gamepad", "--bin", "pad", "--"]).args(arguments);

@@ -3,7 +3,7 @@
 mod diverged;
 mod ground;
 mod physics_character;
-mod push;
+pub(crate) mod push;
 mod save;
 
 use policy_core::contract::{Pose, PoseError};
@@ -14,6 +14,7 @@ use rapier3d::pipeline::PhysicsWorld;
 use crate::articulation::{Articulation, Drive, PlaceError, Sets};
 use crate::model::Model;
 
+pub(crate) use self::ground::empty_world;
 use self::ground::{motor_steps, world};
 use self::push::Pushes;
 
@@ -264,7 +265,7 @@ impl std::fmt::Debug for Character {
     }
 }
 
-fn sense_into(world: &PhysicsWorld, articulation: &Articulation, out: &mut CharacterState) {
+pub(crate) fn sense_into(world: &PhysicsWorld, articulation: &Articulation, out: &mut CharacterState) {
     articulation.sense_into(&world.bodies, &world.multibody_joints, 0.0, out).expect(WHOLE);
     let root = out.root().position;
     out.ground_height = articulation.model().height_at(root.x, root.y);

@@ -2,7 +2,8 @@
 //!
 //! The same policies run here that were trained in MuJoCo, and the functions have the names of physics-bridge where
 //! they mean the same. A [`Model`] is an immutable description, made of an MJCF. An [`Articulation`] is one character
-//! inside any Rapier world, such as a game's. A [`Character`] is one character alone in a world of its own.
+//! inside any Rapier world, such as a game's. A [`Character`] is one character alone in a world of its own. A [`World`] has
+//! several of them, and props, that touch each other.
 //!
 //! ```
 //! # fn main() -> Result<(), Box<dyn std::error::Error>> {
@@ -51,7 +52,9 @@ mod character;
 mod mjcf;
 mod model;
 mod model_error;
+mod saved;
 mod skeleton;
+mod world;
 
 pub use articulation::{Articulation, Drive, PlaceError, Removed, Sets};
 pub use character::{Cause, Character, Diverged, ModelMismatch, Snapshot, SnapshotMismatch};
@@ -64,3 +67,4 @@ pub use policy_core::contract::{
 };
 /// Rapier as this crate uses it.
 pub use rapier3d;
+pub use world::{PropShape, World, WorldError, WorldSnapshot};

@@ -59,43 +59,57 @@ impl Gpu {
     /// When there is no adapter or it gives no device.
     pub fn off_screen() -> Result<Self, GpuError> {
         let instance = wgpu::Instance::new(descriptor());
-        Self::open(&instance, None).map(|(gpu, _)| gpu)
+        pollster::block_on(Self::open(&instance, None)).map(|(gpu, _)| gpu)
     }
 
-    /// Opens a device that can draw into `window`; also returns the surface and its adapter.
+    /// Opens a device that can draw into `target`, a window say; also returns the surface and its adapter.
     ///
     /// # Errors
-    /// When the window gives no surface, and as [`Gpu::off_screen`].
+    /// When the target gives no surface, and as [`Gpu::off_screen`].
     pub fn for_window(
-        window: Arc<winit::window::Window>,
+        target: impl Into<wgpu::SurfaceTarget<'static>>,
+    ) -> Result<(Self, wgpu::Surface<'static>, wgpu::Adapter), GpuError> {
+        pollster::block_on(Self::for_target(target))
+    }
+
+    /// The same without waiting, for browsers.
+    ///
+    /// # Errors
+    /// As [`Gpu::for_window`].
+    pub async fn for_target(
+        target: impl Into<wgpu::SurfaceTarget<'static>>,
     ) -> Result<(Self, wgpu::Surface<'static>, wgpu::Adapter), GpuError> {
         let instance = wgpu::Instance::new(descriptor());
-        let surface = instance.create_surface(window).map_err(GpuError::NoSurface)?;
-        let (gpu, adapter) = Self::open(&instance, Some(&surface))?;
+        let surface = instance.create_surface(target).map_err(GpuError::NoSurface)?;
+        let (gpu, adapter) = Self::open(&instance, Some(&surface)).await?;
         Ok((gpu, surface, adapter))
     }
 
-    fn open(
+    async fn open(
         instance: &wgpu::Instance,
         surface: Option<&wgpu::Surface<'_>>,
     ) -> Result<(Self, wgpu::Adapter), GpuError> {
-        let request = |force_fallback_adapter| {
-            pollster::block_on(instance.request_adapter(&wgpu::RequestAdapterOptions {
-                power_preference: wgpu::PowerPreference::HighPerformance,
-                force_fallback_adapter,
-                compatible_surface: surface,
-                ..Default::default()
-            }))
+        let options = |force_fallback_adapter| wgpu::RequestAdapterOptions {
+            power_preference: wgpu::PowerPreference::HighPerformance,
+            force_fallback_adapter,
+            compatible_surface: surface,
+            ..Default::default()
         };
-        let adapter = request(false).or_else(|_| request(true)).map_err(GpuError::NoAdapter)?;
+        let adapter = match instance.request_adapter(&options(false)).await {
+            Ok(adapter) => adapter,
+            Err(_) => instance.request_adapter(&options(true)).await.map_err(GpuError::NoAdapter)?,
+        };
         let info = adapter.get_info();
-        let (device, queue) = pollster::block_on(adapter.request_device(&wgpu::DeviceDescriptor {
+        let descriptor = wgpu::DeviceDescriptor {
             label: Some("policy space"),
             required_limits: wgpu::Limits::downlevel_defaults().using_resolution(adapter.limits()),
             memory_hints: wgpu::MemoryHints::MemoryUsage,
             ..Default::default()
-        }))
-        .map_err(|source| GpuError::NoDevice { adapter: info.name.clone(), source })?;
+        };
+        let (device, queue) = adapter
+            .request_device(&descriptor)
+            .await
+            .map_err(|source| GpuError::NoDevice { adapter: info.name.clone(), source })?;
         let is_software = info.device_type == wgpu::DeviceType::Cpu;
         let lost = watch(&device);
         Ok((Self { device, queue, adapter_name: info.name, is_software, lost }, adapter))

@@ -5,7 +5,7 @@ use std::process::ExitCode;
 
 use clap::Parser as _;
 use viewer::cli::open::open;
-use viewer::cli::{Cli, Task, bench, headless};
+use viewer::cli::{Cli, Task, bench, headless, replay_files};
 use viewer::{signals, text};
 
 /// Longest message of an error, characters.
@@ -73,9 +73,11 @@ fn run(cli: &Cli) -> anyhow::Result<()> {
         },
         None if cli.demo.headless => say(&headless::run(&cli.demo)?.summary()),
         None => {
-            let mut opened = open(&cli.demo)?;
+            let (demo, replay) = replay_files::chosen(&cli.demo)?;
+            let mut opened = open(&demo)?;
+            replay_files::begin(&demo, replay.as_ref(), &mut opened.app)?;
             opened.app.start_analysis();
-            viewer::window::run(&cli.demo, opened.app, opened.appearance, opened.layout)
+            viewer::window::run(&demo, opened.app, opened.appearance, opened.layout)
         }
     }
 }

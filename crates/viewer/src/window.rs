@@ -11,7 +11,7 @@ use winit::event_loop::{ActiveEventLoop, ControlFlow, EventLoop};
 use winit::window::{Window, WindowId};
 
 use crate::app::{App, KeptLayout};
-use crate::cli::Demo;
+use crate::cli::{Demo, replay_files};
 use crate::frame_composer::FrameComposer;
 use crate::gpu::{Gpu, GpuError};
 use crate::pads::Pads;
@@ -47,6 +47,7 @@ pub fn run(demo: &Demo, app: App, appearance: Appearance, layout: Option<PathBuf
     if let Some(open) = host.window {
         open.composer.finish();
     }
+    replay_files::end(demo, &host.app)?;
     if let Some(kept) = &mut host.layout {
         kept.keep(&host.app.layout)?;
     }

@@ -291,3 +291,47 @@ fn a_run_that_draws_prints_nothing_to_standard_error() {
     assert!(output.status.success());
     assert_eq!(String::from_utf8_lossy(&output.stderr), "");
 }
+
+#[test]
+fn a_replay_repeats_the_run_and_stops_where_it_differs() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("walk.replay");
+    let recorded =
+        report(folder.path(), "a.json", &["--physics", "rapier", "--record-replay", "walk.replay"]);
+    let play =
+        |name: &str, report: &str| run(folder.path(), &["--headless", "--replay", name, "--report", report]);
+    let played = play("walk.replay", "b.json");
+    assert!(played.status.success(), "{}", String::from_utf8_lossy(&played.stderr));
+    let of = |name: &str| -> serde_json::Value {
+        serde_json::from_slice(&std::fs::read(folder.path().join(name)).unwrap()).unwrap()
+    };
+    let again = of("b.json");
+    assert_eq!(again["state_hash"], recorded["state_hash"]);
+    assert_eq!(again["physics"], "rapier");
+    assert!((again["seconds"].as_f64().unwrap() - 4.0).abs() < 1e-5, "as long as it was: {again}");
+
+    // Other presses with the recorded hashes.
+    let bytes = std::fs::read(&path).unwrap();
+    let replay = replay::Replay::from_bytes(&bytes).unwrap();
+    let mut altered = replay::Recorder::new(replay.header().clone()).unwrap();
+    let mut playback = replay::Playback::new(&replay);
+    let hashes = replay.hashes().to_vec();
+    while let Some(pads) = playback.next_pads() {
+        let mut pad = pads[0];
+        pad.triggers[1] = 255;
+        let second = (playback.tick() / 30).max(1) as usize - 1;
+        altered.push(&[pad], hashes[second]).unwrap();
+    }
+    std::fs::write(folder.path().join("altered.replay"), altered.finish().to_bytes()).unwrap();
+    let stopped = play("altered.replay", "c.json");
+    let said = String::from_utf8_lossy(&stopped.stderr).into_owned();
+    assert!(!stopped.status.success() && said.contains("expected the state"), "{said}");
+
+    // What is no replay, and one that goes with other choices.
+    std::fs::write(folder.path().join("cut.replay"), &bytes[..bytes.len() / 2]).unwrap();
+    let cut = play("cut.replay", "d.json");
+    let said = String::from_utf8_lossy(&cut.stderr).into_owned();
+    assert!(!cut.status.success() && said.contains("cut.replay") && said.contains("damaged"), "{said}");
+    let both = run(folder.path(), &["--headless", "--replay", "walk.replay", "--physics", "mujoco"]);
+    assert_eq!(both.status.code(), Some(2));
+}

@@ -35,6 +35,9 @@ const RULES: &[Rule] = &[
     rule("policy-capi", &["policy-core"], &[]),
     rule("files", &[], &[]),
     rule("pca", &[], &[]),
+    rule("replay", &["policy-core"], &[]),
+    rule("lockstep", &["policy-core", "physics-rapier", "replay"], &[]),
+    rule("rollback", &["lockstep"], &[]),
     rule("physics", &["policy-core", "physics-bridge", "physics-rapier"], &[]),
     rule("random", &["policy-core"], &["physics-bridge"]),
     rule("clips", &["policy-core", "physics-bridge", "files"], &[]),
@@ -44,7 +47,11 @@ const RULES: &[Rule] = &[
         &["policy-core", "physics", "physics-bridge", "clips", "random", "files", "evaluation"],
         &[],
     ),
-    rule("viewer", &["policy-core", "physics", "physics-bridge", "gamepad", "files", "pca", "random"], &[]),
+    rule(
+        "viewer",
+        &["policy-core", "physics", "physics-bridge", "gamepad", "files", "pca", "random", "replay"],
+        &[],
+    ),
     rule(
         "integration-tests",
         &["policy-core", "gamepad", "physics-bridge", "physics-rapier", "clips", "trainer", "viewer"],
@@ -80,12 +87,14 @@ const OWNED: &[Owned] = &[
     owned("egui*", &["viewer"], DRAWS),
     owned("gltf", &["viewer"], DRAWS),
     owned("gemm", &["trainer"], "only trainer learns"),
+    owned("ggrs", &["rollback"], "only the example speaks to a network"),
     owned("bevy*", &[], "only engines/bevy knows Bevy, in a workspace of its own"),
 ];
 
 /// Crates of the workspace below which, at any depth, none of these may lie.
 const NEVER_BELOW: &[(&str, &[&str])] = &[
     ("xtask", &["mujoco-rs"]),
+    ("lockstep", &["mujoco-rs", "wgpu", "winit", "hidapi", "gilrs", "ggrs"]),
     ("policy-core", &["mujoco-rs", "hidapi", "gilrs", "wgpu", "winit", "egui", "gltf", "bevy"]),
     ("evaluation", &["wgpu", "winit", "egui", "gemm"]),
     ("trainer", &["wgpu", "winit", "egui"]),

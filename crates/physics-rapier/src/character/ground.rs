@@ -17,6 +17,14 @@ pub(super) fn motor_steps(model: &Model) -> u32 {
 
 /// A world with the ground of the MJCF and one character.
 pub(super) fn world(model: &Model, drive: Drive) -> (PhysicsWorld, Articulation) {
+    let mut world = empty_world(model, drive);
+    let articulation =
+        Articulation::insert(model, &mut Sets::from(&mut world), drive, InteractionGroups::all());
+    (world, articulation)
+}
+
+/// A world with the ground of the MJCF and nothing on it.
+pub(crate) fn empty_world(model: &Model, drive: Drive) -> PhysicsWorld {
     let mut world = PhysicsWorld { gravity: model.gravity(), ..PhysicsWorld::new() };
     let parameters = &mut world.integration_parameters;
     (parameters.dt, parameters.num_solver_iterations) = match drive {
@@ -27,7 +35,5 @@ pub(super) fn world(model: &Model, drive: Drive) -> (PhysicsWorld, Articulation)
         collider.set_collision_groups(InteractionGroups::all());
         world.colliders.insert(collider);
     }
-    let articulation =
-        Articulation::insert(model, &mut Sets::from(&mut world), drive, InteractionGroups::all());
-    (world, articulation)
+    world
 }

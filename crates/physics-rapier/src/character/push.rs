@@ -11,7 +11,7 @@ use super::Character;
 
 /// The pushes under way, one entry for each body. World axes, at the centre of mass of each body.
 #[derive(Clone)]
-pub(super) struct Pushes {
+pub(crate) struct Pushes {
     /// Newtons.
     forces: Vec<Vec3>,
     /// How much longer each force acts, physics steps.
@@ -22,7 +22,7 @@ pub(super) struct Pushes {
 
 impl Pushes {
     /// No push. Allocates.
-    pub(super) fn new(skeleton: &Skeleton) -> Self {
+    pub(crate) fn new(skeleton: &Skeleton) -> Self {
         let count = skeleton.body_count();
         Self {
             forces: vec![Vec3::ZERO; count],
@@ -32,24 +32,51 @@ impl Pushes {
     }
 
     /// Ends every push.
-    pub(super) fn clear(&mut self) {
+    pub(crate) fn clear(&mut self) {
         self.steps_left.fill(0);
         self.impulses.fill(Vec3::ZERO);
     }
 
-    pub(super) fn acts_on(&self, body: BodyId) -> bool {
+    pub(crate) fn acts_on(&self, body: BodyId) -> bool {
         let index = body.index();
         self.steps_left.get(index).is_some_and(|&left| left > 0)
             || self.impulses.get(index).is_some_and(|&impulse| impulse != Vec3::ZERO)
     }
 
+    /// Begins a push of so many seconds, in place of the one that still acts on the body.
+    ///
+    /// # Errors
+    /// As [`Character::push`].
+    pub(crate) fn push(
+        &mut self,
+        body: BodyId,
+        force: Vec3,
+        secs: f32,
+        dt_secs: f32,
+    ) -> Result<(), PushError> {
+        check_push(body, self.forces.len(), force, secs)?;
+        self.forces[body.index()] = force;
+        self.steps_left[body.index()] = (secs / dt_secs).round() as u32;
+        Ok(())
+    }
+
+    /// Writes what is under way, for a hash of the state.
+    pub(crate) fn bits(&self, out: &mut impl FnMut(u32)) {
+        for ((force, &steps), impulse) in self.forces.iter().zip(&self.steps_left).zip(&self.impulses) {
+            if steps > 0 || *impulse != Vec3::ZERO {
+                out(steps);
+                force.to_array().into_iter().chain(impulse.to_array()).for_each(|v| out(v.to_bits()));
+            }
+        }
+    }
+
     /// True while a force has to be added.
-    pub(super) fn are_under_way(&self) -> bool {
+    pub(crate) fn are_under_way(&self) -> bool {
         self.steps_left.iter().any(|&left| left > 0) || self.impulses.iter().any(|&i| i != Vec3::ZERO)
     }
 
     /// Adds the forces of the physics step that comes next, but for bodies that outrun theirs. `state` is that of now.
-    pub(super) fn apply(
+    pub(crate) fn apply(
         &mut self,
         bodies: &mut RigidBodySet,
         handles: &[RigidBodyHandle],
@@ -87,10 +114,7 @@ impl Character {
     /// When there is no such body, a number is not finite, the force is over 1 MN, or the duration negative or over
     /// an hour.
     pub fn push(&mut self, body: BodyId, force: Vec3, secs: f32) -> Result<(), PushError> {
-        check_push(body, self.pushes.forces.len(), force, secs)?;
-        self.pushes.forces[body.index()] = force;
-        self.pushes.steps_left[body.index()] = (secs / self.world.integration_parameters.dt).round() as u32;
-        Ok(())
+        self.pushes.push(body, force, secs, self.world.integration_parameters.dt)
     }
 
     /// Hits `body` at its centre of mass with `impulse` newton seconds, world axes, during the next physics step.

@@ -1,28 +1,17 @@
 //! A character's state as a value, and another model for a character under way.
 
 use policy_core::BodyId;
-use rapier3d::dynamics::{
-    CCDSolver, ImpulseJointSet, IslandManager, MultibodyJointSet, RigidBodySet, SoftBodySet,
-};
-use rapier3d::geometry::{BroadPhaseBvh, ColliderSet, ContactPair, NarrowPhase};
-use rapier3d::pipeline::PhysicsWorld;
+use rapier3d::geometry::ContactPair;
 
 use super::{Character, Pushes};
 use crate::articulation::Articulation;
 use crate::model::Model;
+use crate::saved::SavedSets;
 
 /// The whole state of a character at the end of a tick: its world, contacts included, its targets and pushes.
 #[derive(Clone)]
 pub struct Snapshot {
-    bodies: RigidBodySet,
-    colliders: ColliderSet,
-    impulse_joints: ImpulseJointSet,
-    multibody_joints: MultibodyJointSet,
-    islands: IslandManager,
-    broad_phase: BroadPhaseBvh,
-    narrow_phase: NarrowPhase,
-    soft_bodies: SoftBodySet,
-    ccd_solver: CCDSolver,
+    sets: SavedSets,
     articulation: Articulation,
     pushes: Pushes,
     tick: u64,
@@ -44,17 +33,8 @@ impl Character {
     /// The state now. Allocates.
     #[must_use]
     pub fn save(&self) -> Snapshot {
-        let world = &self.world;
         Snapshot {
-            bodies: world.bodies.clone(),
-            colliders: world.colliders.clone(),
-            impulse_joints: world.impulse_joints.clone(),
-            multibody_joints: world.multibody_joints.clone(),
-            islands: world.islands.clone(),
-            broad_phase: world.broad_phase.clone(),
-            narrow_phase: world.narrow_phase.clone(),
-            soft_bodies: world.soft_bodies.clone(),
-            ccd_solver: world.ccd_solver.clone(),
+            sets: SavedSets::of(&self.world),
             articulation: self.articulation.clone(),
             pushes: self.pushes.clone(),
             tick: self.tick,
@@ -70,34 +50,8 @@ impl Character {
         if !saved.model().is(self.model()) || saved.drive() != self.articulation.drive() {
             return Err(SnapshotMismatch);
         }
-        let Snapshot {
-            bodies,
-            colliders,
-            impulse_joints,
-            multibody_joints,
-            islands,
-            broad_phase,
-            narrow_phase,
-            soft_bodies,
-            ccd_solver,
-            articulation,
-            pushes,
-            tick,
-        } = snapshot.clone();
-        self.world = PhysicsWorld {
-            gravity: self.world.gravity,
-            integration_parameters: self.world.integration_parameters,
-            bodies,
-            colliders,
-            impulse_joints,
-            multibody_joints,
-            islands,
-            broad_phase,
-            narrow_phase,
-            soft_bodies,
-            ccd_solver,
-            ..PhysicsWorld::new()
-        };
+        let Snapshot { sets, articulation, pushes, tick } = snapshot.clone();
+        sets.restore(&mut self.world);
         (self.articulation, self.pushes, self.tick) = (articulation, pushes, tick);
         Ok(())
     }

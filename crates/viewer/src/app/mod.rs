@@ -18,6 +18,7 @@ mod pick;
 mod place;
 mod plots;
 mod preferences;
+mod replay;
 mod requests;
 mod toasts;
 mod tour;
@@ -34,6 +35,7 @@ use crate::analysis::Analysis;
 use crate::camera::Camera;
 use crate::panels;
 use crate::render::Scene;
+use crate::replays::{Replaying, ReplayingError};
 use crate::scene_setup::{Trail, set_scene};
 use crate::sim::{Divergence, Held, Playback, Simulation};
 use crate::text::counted;
@@ -145,6 +147,10 @@ pub struct App {
     pub put_right: usize,
     /// A file that was dropped on the window; the frame composer opens it.
     pub dropped: Option<std::path::PathBuf>,
+    /// Records the pad, or plays a replay.
+    pub replaying: Replaying,
+    /// Why recording or playing ended before its time.
+    pub replay_stopped: Option<ReplayingError>,
     analysis_soon: Option<Receiver<Analysis>>,
 }
 
@@ -190,6 +196,8 @@ impl App {
             best: Best::default(),
             put_right: 0,
             dropped: None,
+            replaying: Replaying::Off,
+            replay_stopped: None,
             analysis_soon: None,
         }
     }
@@ -250,10 +258,11 @@ impl App {
     /// One tick of the world. Characters whose physics diverged are in their state before it.
     pub fn tick(&mut self) -> Vec<Divergence> {
         self.pull();
-        let input = self.input();
+        let Some((input, camera)) = self.steering() else { return Vec::new() };
         self.give_back_to_triggers(&input);
         self.sim.overrides.blend = self.layers.blend();
-        let divergences = self.sim.tick(&input, self.camera.heading());
+        let divergences = self.sim.tick(&input, camera);
+        self.follow_replay(&input, camera);
         self.tour.tick(self.sim.tick_secs());
         self.observe_first_steps(&input);
         self.note_refusal();

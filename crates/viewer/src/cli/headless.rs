@@ -4,9 +4,11 @@ use std::path::{Path, PathBuf};
 use std::time::Instant;
 
 use anyhow::{Context as _, bail};
+use replay::Replay;
 
 use super::open::open;
 use super::pad_input::PadInput;
+use super::replay_files;
 use super::report::{RaceReport, Report};
 use super::{Demo, MOST_SECS};
 use crate::analysis::Analysis;
@@ -24,7 +26,8 @@ use crate::sim::{Divergence, LIE_SECS, Playback};
 /// # Errors
 /// When a file can't be read or written, or nothing can be drawn though pictures are asked for.
 pub fn run(demo: &Demo) -> anyhow::Result<Report> {
-    let report = Headless::through(demo)?.report();
+    let (demo, replay) = replay_files::chosen(demo)?;
+    let report = Headless::through(&demo, replay.as_ref())?.report();
     if let Some(path) = &demo.report {
         let text = serde_json::to_string_pretty(&report).context("report")? + "\n";
         files::write(path, text.as_bytes()).with_context(|| format!("cannot write {}", path.display()))?;
@@ -52,7 +55,7 @@ pub struct Played {
 /// # Errors
 /// As [`run`].
 pub fn play(demo: &Demo) -> anyhow::Result<Option<Played>> {
-    let run = Headless::through(demo)?;
+    let run = Headless::through(demo, None)?;
     Ok(run.app.sim.playback().map(|clip| Played {
         clip: clip.clip().into(),
         seconds: run.seconds,
@@ -75,8 +78,8 @@ struct Headless<'a> {
 
 impl<'a> Headless<'a> {
     /// A whole run.
-    fn through(demo: &'a Demo) -> anyhow::Result<Self> {
-        let mut run = Self::new(demo)?;
+    fn through(demo: &'a Demo, replay: Option<&Replay>) -> anyhow::Result<Self> {
+        let mut run = Self::new(demo, replay)?;
         let tick_secs = run.tick_secs();
         let ticks = (run.seconds / tick_secs).round().max(1.0) as u64;
         for tick in 0..ticks {
@@ -86,16 +89,22 @@ impl<'a> Headless<'a> {
                 break;
             }
             run.tick(tick)?;
+            if run.app.replay_stopped.is_some() {
+                break;
+            }
         }
+        replay_files::end(demo, &run.app)?;
         Ok(run)
     }
 
-    fn new(demo: &'a Demo) -> anyhow::Result<Self> {
+    fn new(demo: &'a Demo, replay: Option<&Replay>) -> anyhow::Result<Self> {
         let input = PadInput::load(demo)?;
         let opened = open(demo)?;
         let mut app = opened.app;
+        replay_files::begin(demo, replay, &mut app)?;
+        let played = replay.map(|replay| f64::from(replay.ticks()) * f64::from(app.sim.tick_secs()));
         let clip = app.sim.playback().map(Playback::duration);
-        let seconds = demo.seconds.or(clip).or(input.duration()).unwrap_or(10.0);
+        let seconds = demo.seconds.or(clip).or(played).or(input.duration()).unwrap_or(10.0);
         if seconds > MOST_SECS {
             bail!(
                 "expected a script or recording of at most {MOST_SECS} s, found {seconds} s; --seconds plays a part"

@@ -1,5 +1,6 @@
 //! Reads what the command line names: pack and mesh.
 
+use std::borrow::Cow;
 use std::path::Path;
 use std::sync::Arc;
 
@@ -19,13 +20,19 @@ use crate::render::Appearance;
 /// # Errors
 /// When the file can't be read or is no pack; the message names it.
 pub fn pack(path: Option<&Path>) -> anyhow::Result<Arc<CharacterPack>> {
-    let Some(path) = path else {
-        let pack = CharacterPack::from_bytes(assets::HUMANOID_PACK).context("the pack inside the demo")?;
-        return Ok(Arc::new(pack));
-    };
+    let bytes = pack_bytes(path)?;
+    let which = || path.map_or("the pack inside the demo".into(), |path| format!("pack {}", path.display()));
+    Ok(Arc::new(CharacterPack::from_bytes(&bytes).with_context(which)?))
+}
+
+/// The bytes of the pack of a file, or of the one inside.
+///
+/// # Errors
+/// When the file can't be read; the message names it.
+pub fn pack_bytes(path: Option<&Path>) -> anyhow::Result<Cow<'static, [u8]>> {
+    let Some(path) = path else { return Ok(assets::HUMANOID_PACK.into()) };
     let bytes = files::read(path, MAX_DROPPED_BYTES).with_context(|| format!("pack {}", path.display()))?;
-    let pack = CharacterPack::from_bytes(&bytes).with_context(|| format!("pack {}", path.display()))?;
-    Ok(Arc::new(pack))
+    Ok(bytes.into())
 }
 
 /// How the characters of a pack look: with the mesh of a file, else with the pack's own, else with the mannequin if it

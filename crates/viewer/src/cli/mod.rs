@@ -5,6 +5,7 @@ pub mod headless;
 pub mod load;
 pub mod open;
 mod pad_input;
+pub mod replay_files;
 mod report;
 mod values;
 
@@ -47,6 +48,8 @@ Examples:
       the same, with the panels in the pictures
   policy-space --character quadruped.pack.safetensors
       another character; a pack or a mesh can also be dropped on the window
+  policy-space --physics rapier --record-replay walk.replay
+      keeps what is pressed; policy-space --replay walk.replay plays it, and compares the state every second
   policy-space --poses walk.json
       a clip in a window, round and round; with --headless --frames out/ once, as pictures
 
@@ -83,6 +86,20 @@ pub struct Demo {
     /// Pad input recorded from a device by `pad record`, instead of a script.
     #[arg(long, value_name = "FILE", requires = "headless", conflicts_with = "script")]
     pub recording: Option<PathBuf>,
+    /// Record what is pressed into this file: a replay, to be played on any machine.
+    #[arg(long, value_name = "FILE")]
+    pub record_replay: Option<PathBuf>,
+    /// Play a replay. It brings scene, physics, ground, characters, blend mode and seed, and stops with an error at the
+    /// first state that differs from the recorded one.
+    #[arg(
+        long,
+        value_name = "FILE",
+        conflicts_with_all = [
+            "script", "recording", "poses", "mode", "ghost", "physics", "terrain", "characters", "seed", "scene",
+            "record_replay", "seconds",
+        ]
+    )]
+    pub replay: Option<PathBuf>,
     /// Show a clip instead of a simulation: poses as `trainer view CLIP --poses FILE` writes them (JSON with
     /// format, clip, hz and qpos). Bodies are placed by forward kinematics and nothing is simulated; between two
     /// poses positions and rotations are interpolated.
@@ -91,7 +108,7 @@ pub struct Demo {
         value_name = "FILE",
         conflicts_with_all = [
             "script", "recording", "report", "character", "mode", "ghost", "physics", "terrain", "characters",
-            "seed", "scene",
+            "seed", "scene", "record_replay",
         ]
     )]
     pub poses: Option<PathBuf>,

@@ -1,0 +1,124 @@
+//! The same pads give the same state: again, after a restore, and in the order in which rollback asks for it.
+#![allow(missing_docs, reason = "tests")]
+
+use lockstep::{Arena, ArenaConfig, ArenaError, Pad, SCRIPT_TICKS, Seen, script_pad};
+use replay::{Playback, Recorder, Replay};
+
+const PACK: &[u8] = include_bytes!("../../../assets/humanoid.pack.safetensors");
+
+fn arena(players: usize) -> Arena {
+    Arena::new(PACK, ArenaConfig { players, ..ArenaConfig::default() }).unwrap()
+}
+
+fn pads(tick: u32, players: usize) -> Vec<Pad> {
+    (0..players).map(|player| script_pad(tick, player)).collect()
+}
+
+#[test]
+fn the_script_walks_runs_rolls_falls_and_gets_up() {
+    let (mut arena, mut seen) = (arena(1), Seen::default());
+    for tick in 0..SCRIPT_TICKS {
+        arena.tick(&pads(tick, 1)).unwrap();
+        seen.look(&arena);
+    }
+    assert!(seen.top_speed_mps > 1.5, "{seen:?}");
+    assert!(seen.rolled && seen.fell && seen.got_up, "{seen:?}");
+}
+
+#[test]
+fn the_same_pads_give_the_same_hashes_and_other_pads_others() {
+    let mut arenas = [arena(2), arena(2), arena(2)];
+    for tick in 0..60 {
+        let same = pads(tick, 2);
+        let mut other = same.clone();
+        if tick == 40 {
+            other[1].left_stick[0] ^= 1;
+        }
+        let [a, b, c] = &mut arenas;
+        a.tick(&same).unwrap();
+        b.tick(&same).unwrap();
+        c.tick(&other).unwrap();
+        assert_eq!(a.hash(), b.hash(), "tick {tick}");
+        assert_eq!(a.hash() == c.hash(), tick < 40, "tick {tick}: one step of a stick is seen at once");
+    }
+}
+
+#[test]
+fn a_restored_arena_continues_bit_for_bit() {
+    let mut arena = arena(2);
+    // In the middle of the fall, with contacts and a skill under way.
+    for tick in 0..350 {
+        arena.tick(&pads(tick, 2)).unwrap();
+    }
+    let (saved, at) = (arena.save(), arena.hash());
+    let run = |arena: &mut Arena| -> Vec<u64> {
+        (350..400)
+            .map(|tick| {
+                arena.tick(&pads(tick, 2)).unwrap();
+                arena.hash()
+            })
+            .collect()
+    };
+    let first = run(&mut arena);
+    arena.restore(&saved).unwrap();
+    assert_eq!(arena.hash(), at);
+    assert_eq!(run(&mut arena), first);
+    assert_eq!(saved.tick_count(), 350);
+}
+
+#[test]
+fn saving_and_restoring_every_tick_changes_nothing() {
+    let (mut plain, mut restored) = (arena(2), arena(2));
+    for tick in 0..120 {
+        let pads = pads(tick, 2);
+        plain.tick(&pads).unwrap();
+        // A guess that was wrong, taken back.
+        let before = restored.save();
+        restored.tick(&[Pad { left_stick: [-90, 20], ..pads[0] }, pads[1]]).unwrap();
+        restored.restore(&before).unwrap();
+        restored.tick(&pads).unwrap();
+        assert_eq!(plain.hash(), restored.hash(), "tick {tick}");
+    }
+}
+
+#[test]
+fn a_recorded_run_is_played_again_and_a_change_is_found() {
+    let mut arena = arena(2);
+    let mut recorder = Recorder::new(arena.header()).unwrap();
+    for tick in 0..90 {
+        let pads = pads(tick, 2);
+        arena.tick(&pads).unwrap();
+        recorder.push(&pads, arena.hash()).unwrap();
+    }
+    let replay = Replay::from_bytes(&recorder.finish().to_bytes()).unwrap();
+    let play = |disturbed: Option<u32>| -> Result<u32, replay::Mismatch> {
+        let mut arena = self::arena(2);
+        arena.header().expect(replay.header()).unwrap();
+        let mut playback = Playback::new(&replay);
+        while let Some(pads) = playback.next_pads() {
+            let mut pads = pads.to_vec();
+            if disturbed == Some(playback.tick()) {
+                pads[0].triggers[1] ^= 64;
+            }
+            arena.tick(&pads).unwrap();
+            playback.check(arena.hash())?;
+        }
+        Ok(playback.tick())
+    };
+    assert_eq!(play(None), Ok(90));
+    let mismatch = play(Some(35)).unwrap_err();
+    assert_eq!((mismatch.tick, mismatch.equal), (60, 30));
+}
+
+#[test]
+fn wrong_numbers_are_refused() {
+    let config = ArenaConfig::default();
+    let made = |config| Arena::new(PACK, config).map(|_| ()).unwrap_err().to_string();
+    assert_eq!(made(ArenaConfig { players: 0, ..config }), "expected 1 to 8 players, found 0");
+    assert_eq!(made(ArenaConfig { players: 9, ..config }), "expected 1 to 8 players, found 9");
+    assert_eq!(made(ArenaConfig { crates: 65, ..config }), "expected at most 64 crates, found 65");
+    assert!(matches!(Arena::new(b"no pack", config), Err(ArenaError::Pack(_))));
+    let mut two = arena(2);
+    assert!(matches!(two.tick(&[Pad::default()]), Err(ArenaError::Pads { expected: 2, found: 1 })));
+    assert!(matches!(two.restore(&arena(1).save()), Err(ArenaError::State)));
+}
