@@ -79,7 +79,9 @@ pub struct PolicySpacePlugins;
 
 impl PluginGroup for PolicySpacePlugins {
     fn build(self) -> PluginGroupBuilder {
-        shown(PluginGroupBuilder::start::<Self>().add(CorePlugin::default()).add(PolicyRapierPlugin::default()))
+        shown(
+            PluginGroupBuilder::start::<Self>().add(CorePlugin::default()).add(PolicyRapierPlugin::default()),
+        )
     }
 }
 
@@ -91,7 +93,9 @@ pub struct PolicySpaceMujocoPlugins;
 #[cfg(feature = "mujoco")]
 impl PluginGroup for PolicySpaceMujocoPlugins {
     fn build(self) -> PluginGroupBuilder {
-        shown(PluginGroupBuilder::start::<Self>().add(CorePlugin::default()).add(PolicyMujocoPlugin::default()))
+        shown(
+            PluginGroupBuilder::start::<Self>().add(CorePlugin::default()).add(PolicyMujocoPlugin::default()),
+        )
     }
 }
 

@@ -230,7 +230,11 @@ fn what_the_game_removes_is_put_back() {
     assert_ne!(body(&app, character, "head"), head);
     let bodies = app.world().get::<PolicyBodies>(character).expect("bodies").entities();
     let index = |&entity: &Entity| app.world().get::<PolicyBody>(entity).expect("a body").index;
-    assert_eq!(bodies.iter().map(index).collect::<Vec<_>>(), (0..15).collect::<Vec<_>>(), "in the order of the skeleton");
+    assert_eq!(
+        bodies.iter().map(index).collect::<Vec<_>>(),
+        (0..15).collect::<Vec<_>>(),
+        "in the order of the skeleton"
+    );
     assert!(walks(&app, character));
 }
 

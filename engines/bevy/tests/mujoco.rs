@@ -84,8 +84,7 @@ fn props_and_fixtures_are_pushed_moved_refused_and_removed() {
         .spawn((MujocoProp::new(Prop::new(solid, 3.0)), Transform::from_translation(crate_at)))
         .id();
     let wall = Solid::Cuboid { half_extents: Vec3::new(5.0, 1.0, 0.1) };
-    let wall =
-        app.world_mut().spawn((MujocoFixture::new(wall), Transform::from_xyz(0.0, 1.0, 20.0))).id();
+    let wall = app.world_mut().spawn((MujocoFixture::new(wall), Transform::from_xyz(0.0, 1.0, 20.0))).id();
     let ball = MujocoProp::thrown(Prop::ball(0.1, 1.0), Vec3::new(0.0, 0.0, 8.0));
     let ball = app.world_mut().spawn((ball, Transform::from_xyz(0.0, 1.0, 12.0))).id();
     let heavy = MujocoProp::new(Prop::cube(0.4, f32::NAN));
@@ -168,7 +167,11 @@ fn a_bad_transform_is_refused_and_a_good_one_puts_it_there() {
     let mut world = app.world_mut().resource_mut::<MujocoWorld>();
     world.world_mut().expect("a world").edit(|edit| edit.remove_character(handle)).expect("it is there");
     run(&mut app, 1.0);
-    assert!(heard(&app).errors.last().is_some_and(|error| error.contains("removed")), "{:?}", heard(&app).errors);
+    assert!(
+        heard(&app).errors.last().is_some_and(|error| error.contains("removed")),
+        "{:?}",
+        heard(&app).errors
+    );
     assert!(app.world().get::<MujocoBody>(character).is_some_and(|body| body.handle() != handle));
     assert!(place(&app, character).distance(there) < 0.5 && root_height(&app, character) > 0.7);
 }

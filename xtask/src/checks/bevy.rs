@@ -24,11 +24,21 @@ pub fn check(workspace: &Workspace) -> Result<Verdict> {
     let channel = channel(workspace)?;
     provide(workspace, &channel)?;
     run(cargo(workspace, &channel).args(["fmt", "--check"])).context("formatting")?;
-    run(cargo(workspace, &channel).args(["clippy", "--locked", FEATURES, "--all-targets", "--", "-D", "warnings"]))
-        .context("clippy")?;
+    run(cargo(workspace, &channel).args([
+        "clippy",
+        "--locked",
+        FEATURES,
+        "--all-targets",
+        "--",
+        "-D",
+        "warnings",
+    ]))
+    .context("clippy")?;
     // Without the examples, which clippy has compiled.
-    run(cargo(workspace, &channel).args(["test", "--locked", FEATURES, "--lib", "--tests"])).context("tests")?;
-    run(cargo(workspace, &channel).args(["test", "--locked", FEATURES, "--doc"])).context("documentation tests")?;
+    run(cargo(workspace, &channel).args(["test", "--locked", FEATURES, "--lib", "--tests"]))
+        .context("tests")?;
+    run(cargo(workspace, &channel).args(["test", "--locked", FEATURES, "--doc"]))
+        .context("documentation tests")?;
     Ok(Verdict::Passed)
 }
 

@@ -147,9 +147,8 @@ fn embody(
     world.sense_into(handle, &mut controller.sensed).expect("a character just added");
     let skeleton = wanted.described.model.skeleton();
     let names = skeleton.bodies().iter().enumerate();
-    let entities: Vec<Entity> = names
-        .map(|(index, part)| body::spawn_body(commands, wanted.character, index, &part.name))
-        .collect();
+    let entities: Vec<Entity> =
+        names.map(|(index, part)| body::spawn_body(commands, wanted.character, index, &part.name)).collect();
     let at = poses(controller);
     for (&entity, &at) in entities.iter().zip(&at[1..]) {
         let mut pose = BodyPose::default();

@@ -130,7 +130,9 @@ pub(super) fn put_in(
     mut own: ResMut<MujocoWorld>,
     mut refusals: MessageWriter<MujocoRefusal>,
 ) {
-    let Some(world) = own.world.as_mut().filter(|_| !props.is_empty() || !fixtures.is_empty()) else { return };
+    let Some(world) = own.world.as_mut().filter(|_| !props.is_empty() || !fixtures.is_empty()) else {
+        return;
+    };
     let mut refuse = |commands: &mut Commands, entity: Entity, message: String| {
         commands.entity(entity).insert(Refused);
         refusals.write(MujocoRefusal { entity, message });
