@@ -154,7 +154,7 @@ fn dispatch(verb: Verb) -> Result<ExitCode> {
         Verb::Web(arguments) => web::run(&workspace, &arguments)?,
         Verb::Pad { arguments } => {
             let mut pad = workspace.cargo();
-            pad.args(["run", "--quiet", "-p", "gamepad", "--bin", "pad", "--"]).args(arguments);
+            pad.args(["run", "--quiet", "-p", "policy-space-gamepad", "--bin", "pad", "--"]).args(arguments);
             return exit_code_of(&mut pad);
         }
     }

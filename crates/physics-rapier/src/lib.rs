@@ -34,7 +34,7 @@
 //! | integrate a free root as if its centre of mass were its origin | the root's frame is moved to its centre of mass |
 //! | report the body velocities of the last substep's start | velocities follow from the generalised ones |
 //! | skip planes | [`Character`] has the ground of the MJCF; a game brings its own |
-//! | let limbs touch each other | they do not; characters touch each other |
+//! | let all limbs touch each other | those touch that do in MuJoCo, the humanoid's legs; characters touch each other |
 //! | damp a free root, let links sleep | neither |
 //! | have rigid joint limits | limits are as soft as MuJoCo's default ones |
 //! | hold a foot in every direction alike | friction is 0.8 of the MJCF's, the mean of MuJoCo's pyramid |

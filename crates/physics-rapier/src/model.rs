@@ -2,6 +2,7 @@
 
 mod actuation;
 mod change;
+mod contacts;
 
 use std::sync::Arc;
 
@@ -61,6 +62,8 @@ struct Shared {
     robot: MjcfRobot,
     ground: Vec<Collider>,
     places: Places,
+    /// Pairs of bodies of `robot` that never touch; `None` when no two do.
+    apart: Option<Vec<[usize; 2]>>,
     root_offset: Vector,
 }
 
@@ -148,6 +151,7 @@ impl Model {
             // The loader's motors are for joints between free bodies; ours are set when a character is inserted.
             joint.joint.motor_axes = JointAxesMask::empty();
         }
+        let apart = contacts::apart(&robot, &description);
         let root_offset = move_root_to_its_centre_of_mass(&mut robot, places.bodies[0]);
         let variant = Variant {
             settings: Settings::default(),
@@ -166,6 +170,7 @@ impl Model {
             robot,
             ground,
             places,
+            apart,
             root_offset,
         };
         Ok(Self { shared: Arc::new(shared), variant: Arc::new(variant) })
@@ -261,6 +266,11 @@ impl Model {
 
     pub(crate) fn places(&self) -> &Places {
         &self.shared.places
+    }
+
+    /// Pairs of indices in [`Model::robot`]'s bodies that never touch each other; `None` when no two do.
+    pub(crate) fn apart(&self) -> Option<&[[usize; 2]]> {
+        self.shared.apart.as_deref()
     }
 
     /// Where Rapier's root frame is in the MJCF's.

@@ -113,6 +113,37 @@ fn it_falls_as_gravity_says_and_a_push_adds_its_momentum() {
 }
 
 #[test]
+fn its_legs_touch_each_other_and_other_limbs_do_not() {
+    // Ranges let the knees cross, and an upper arm lie in the torso.
+    let driven = [("right_hip_x", 0.26), ("left_hip_x", -0.26), ("right_shoulder_x", 0.78)];
+    let gaps = models().map(|model| {
+        let mut character = afloat(&with(&model, |settings| settings.gravity = 0.0));
+        let mut targets = vec![0.0; model.skeleton().joint_count()];
+        for (name, target) in driven {
+            targets[model.skeleton().joint_named(name).unwrap().index()] = target;
+        }
+        let (mut gap, engine) = (f32::INFINITY, model.engine().title());
+        for _ in 0..30 {
+            character.actuate(&targets);
+            steps(&mut character, 1);
+            let state = state(&character);
+            let of = |name| state.body(body(&character, name));
+            let knees = of("left_shin").position - of("right_shin").position;
+            gap = gap.min((of("pelvis").rotation.inverse() * knees).y);
+        }
+        let state = state(&character);
+        let of = |name| state.body(body(&character, name));
+        let torso = of("torso").position + of("torso").rotation * Vec3::Z * 0.12;
+        let depth = 0.11 - of("right_lower_arm").position.distance(torso);
+        assert!(depth > 0.0, "{engine}: the elbow is {depth} m in the torso");
+        // Knees of 0.05 m each.
+        assert!(gap > 0.08, "{engine}: knees {gap} m apart");
+        gap
+    });
+    assert!((gaps[0] - gaps[1]).abs() < 0.02, "{gaps:?}");
+}
+
+#[test]
 fn pushes_that_are_repeated_drive_a_body_no_faster_than_the_limit() {
     for model in models() {
         let mut character = afloat(&model);

@@ -35,6 +35,23 @@ impl PolicyBodies {
     }
 }
 
+/// An entity for a body.
+pub(crate) fn spawn_body(commands: &mut Commands, character: Entity, index: usize, name: &str) -> Entity {
+    commands.spawn((PolicyBody { character, index }, Name::new(name.to_owned()))).id()
+}
+
+/// Brings the bodies of a character into the order of the skeleton, after one was spawned late.
+pub(crate) fn sort_bodies(commands: &mut Commands, character: Entity) {
+    commands.queue(move |world: &mut World| {
+        let Some(mut bodies) = world.get_mut::<PolicyBodies>(character) else { return };
+        let mut sorted = std::mem::take(&mut bodies.0);
+        sorted.sort_by_key(|&entity| world.get::<PolicyBody>(entity).map(|body| body.index));
+        if let Some(mut bodies) = world.get_mut::<PolicyBodies>(character) {
+            bodies.0 = sorted;
+        }
+    });
+}
+
 /// Where a body, or the character itself, was at the last two fixed steps. Bevy's world.
 #[derive(Component, Reflect, Clone, Copy, Debug, Default, PartialEq)]
 pub struct BodyPose {

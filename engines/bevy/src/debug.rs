@@ -43,6 +43,8 @@ impl Plugin for PolicyDebugPlugin {
                 contacts.run_if(|shown: Res<PolicyGizmos>| shown.contacts),
             ),
         );
+        #[cfg(feature = "mujoco")]
+        app.add_systems(Update, contacts_in_mujoco.run_if(|shown: Res<PolicyGizmos>| shown.contacts));
     }
 }
 
@@ -111,5 +113,13 @@ fn contacts(mut gizmos: Gizmos, characters: Query<&PolicyBodies>, context: ReadR
                 }
             }
         }
+    }
+}
+
+#[cfg(feature = "mujoco")]
+fn contacts_in_mujoco(mut gizmos: Gizmos, world: Option<Res<crate::MujocoWorld>>) {
+    let Some(world) = world.as_ref().and_then(|own| own.world()) else { return };
+    for contact in world.contacts() {
+        gizmos.sphere(crate::axes::to_bevy(contact.position), 0.03, TOUCH);
     }
 }

@@ -28,6 +28,8 @@ mod core_plugin;
 mod debug;
 mod input;
 mod messages;
+#[cfg(feature = "mujoco")]
+mod mujoco;
 mod pack_asset;
 mod rapier;
 #[cfg(feature = "render")]
@@ -41,6 +43,10 @@ pub use core_plugin::{CorePlugin, PolicySpaceSystems};
 pub use debug::{PolicyDebugPlugin, PolicyGizmos};
 pub use input::{PlayerInput, PolicyInputPlugin};
 pub use messages::{CharacterError, CharacterProblem, Fell, Rose, SkillEnded, SkillStarted};
+#[cfg(feature = "mujoco")]
+pub use mujoco::{
+    MujocoBody, MujocoFixture, MujocoProp, MujocoPropBody, MujocoRefusal, MujocoWorld, PolicyMujocoPlugin,
+};
 pub use pack_asset::{PackAsset, PackLoadError, PackLoader};
 pub use rapier::{PolicyRapierPlugin, RapierArticulation, RapierCharacter};
 #[cfg(feature = "render")]
@@ -49,6 +55,10 @@ pub use skin::{PolicySkin, PolicySkinPlugin};
 
 /// The policies, as this crate uses them.
 pub use policy_core;
+
+/// MuJoCo, as this crate uses it: props, fixtures, terrain, worlds.
+#[cfg(feature = "mujoco")]
+pub use physics_bridge;
 
 /// Everything that a game with characters names.
 pub mod prelude {
@@ -63,21 +73,38 @@ pub mod prelude {
 
 use bevy::app::{PluginGroup, PluginGroupBuilder};
 
-/// All plug-ins: core, Rapier, input, and those of the features.
+/// All plug-ins: core, Rapier, input, skin, and those of the features.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct PolicySpacePlugins;
 
 impl PluginGroup for PolicySpacePlugins {
     fn build(self) -> PluginGroupBuilder {
-        let group = PluginGroupBuilder::start::<Self>()
-            .add(CorePlugin::default())
-            .add(PolicyRapierPlugin::default())
-            .add(PolicyInputPlugin)
-            .add(PolicySkinPlugin);
-        #[cfg(feature = "debug")]
-        let group = group.add(PolicyDebugPlugin);
-        #[cfg(feature = "render")]
-        let group = group.add(BodyMeshesPlugin);
-        group
+        shown(
+            PluginGroupBuilder::start::<Self>().add(CorePlugin::default()).add(PolicyRapierPlugin::default()),
+        )
     }
+}
+
+/// The same with MuJoCo in place of Rapier.
+#[cfg(feature = "mujoco")]
+#[derive(Clone, Copy, Debug, Default)]
+pub struct PolicySpaceMujocoPlugins;
+
+#[cfg(feature = "mujoco")]
+impl PluginGroup for PolicySpaceMujocoPlugins {
+    fn build(self) -> PluginGroupBuilder {
+        shown(
+            PluginGroupBuilder::start::<Self>().add(CorePlugin::default()).add(PolicyMujocoPlugin::default()),
+        )
+    }
+}
+
+/// With the plug-ins that know no physics.
+fn shown(group: PluginGroupBuilder) -> PluginGroupBuilder {
+    let group = group.add(PolicyInputPlugin).add(PolicySkinPlugin);
+    #[cfg(feature = "debug")]
+    let group = group.add(PolicyDebugPlugin);
+    #[cfg(feature = "render")]
+    let group = group.add(BodyMeshesPlugin);
+    group
 }

@@ -23,7 +23,7 @@ impl Default for BodyMeshes {
     }
 }
 
-/// Set when the meshes are there.
+/// On a body that has its meshes.
 #[derive(Component)]
 struct Shown;
 
@@ -34,26 +34,31 @@ pub struct BodyMeshesPlugin;
 impl Plugin for BodyMeshesPlugin {
     fn build(&self, app: &mut App) {
         app.register_type::<BodyMeshes>().add_systems(Update, show);
+        #[cfg(feature = "mujoco")]
+        app.add_systems(Update, show_in_mujoco);
     }
 }
 
 fn show(
     mut commands: Commands,
-    characters: Query<
-        (Entity, &BodyMeshes, &PolicyBodies, &PolicyController, &RapierArticulation),
-        Without<Shown>,
-    >,
+    characters: Query<(&BodyMeshes, &PolicyBodies, &PolicyController, &RapierArticulation)>,
+    shown: Query<(), With<Shown>>,
     context: ReadRapierContext,
     mut meshes: ResMut<Assets<Mesh>>,
     mut materials: ResMut<Assets<StandardMaterial>>,
 ) {
     let Ok(context) = context.single() else { return };
-    for (character, wanted, bodies, controller, own) in &characters {
+    for (wanted, bodies, controller, own) in &characters {
+        if bodies.entities().iter().all(|&entity| shown.contains(entity)) {
+            continue;
+        }
         let material = materials.add(StandardMaterial { base_color: wanted.color, ..default() });
         for ((&entity, &handle), frame) in
             bodies.entities().iter().zip(own.articulation().bodies()).zip(body::poses(controller))
         {
-            let Some(rapier) = context.rigidbody_set.bodies.get(handle) else { continue };
+            let rapier = context.rigidbody_set.bodies.get(handle);
+            let Some(rapier) = rapier.filter(|_| !shown.contains(entity)) else { continue };
+            commands.entity(entity).insert(Shown);
             // Rapier's frame of the root is at its centre of mass; the entity's is the MJCF's.
             let frame_from_rapier = Transform::from_isometry(frame).to_matrix().inverse()
                 * Mat4::from_rotation_translation(*rapier.rotation(), rapier.translation());
@@ -72,7 +77,50 @@ fn show(
                 ));
             }
         }
-        commands.entity(character).insert(Shown);
+    }
+}
+
+/// The same for characters in MuJoCo, whose shapes are in the frames of the bodies.
+#[cfg(feature = "mujoco")]
+fn show_in_mujoco(
+    mut commands: Commands,
+    characters: Query<(&BodyMeshes, &PolicyBodies, &crate::MujocoBody)>,
+    shown: Query<(), With<Shown>>,
+    world: Option<Res<crate::MujocoWorld>>,
+    mut meshes: ResMut<Assets<Mesh>>,
+    mut materials: ResMut<Assets<StandardMaterial>>,
+) {
+    use physics_bridge::ShapeKind;
+
+    let Some(world) = world.as_ref().and_then(|own| own.world()) else { return };
+    for (wanted, bodies, own) in &characters {
+        let Ok(model) = world.model(own.handle()) else { continue };
+        if bodies.entities().iter().all(|&entity| shown.contains(entity)) {
+            continue;
+        }
+        let material = materials.add(StandardMaterial { base_color: wanted.color, ..default() });
+        for shape in model.shapes() {
+            let entity = bodies.entities().get(shape.body.index());
+            let Some(&entity) = entity.filter(|&&entity| !shown.contains(entity)) else { continue };
+            commands.entity(entity).insert(Shown);
+            let (mesh, turn): (Mesh, Quat) = match shape.kind {
+                ShapeKind::Sphere { radius } => (Sphere::new(radius).into(), Quat::IDENTITY),
+                ShapeKind::Capsule { radius, half_length } => {
+                    let along_z = Quat::from_rotation_arc(Vec3::Y, Vec3::Z);
+                    (Capsule3d::new(radius, 2.0 * half_length).into(), along_z)
+                }
+                ShapeKind::Cuboid { half_extents } => {
+                    (Cuboid::from_size(2.0 * half_extents).into(), Quat::IDENTITY)
+                }
+                _ => continue,
+            };
+            commands.spawn((
+                Mesh3d(meshes.add(mesh)),
+                MeshMaterial3d(material.clone()),
+                Transform::from_translation(shape.position).with_rotation(shape.rotation * turn),
+                ChildOf(entity),
+            ));
+        }
     }
 }
 

@@ -228,6 +228,13 @@ fn what_the_game_removes_is_put_back() {
     run(&mut app, 1.0);
     assert_eq!(error_with(&app, "PolicyBody"), 1, "{:?}", heard(&app).errors);
     assert_ne!(body(&app, character, "head"), head);
+    let bodies = app.world().get::<PolicyBodies>(character).expect("bodies").entities();
+    let index = |&entity: &Entity| app.world().get::<PolicyBody>(entity).expect("a body").index;
+    assert_eq!(
+        bodies.iter().map(index).collect::<Vec<_>>(),
+        (0..15).collect::<Vec<_>>(),
+        "in the order of the skeleton"
+    );
     assert!(walks(&app, character));
 }
 

@@ -34,7 +34,7 @@ fn the_architecture_as_drawn_has_no_breach() {
     let metadata = metadata(
         &[
             ("policy-core", &[("glam", "normal"), ("criterion", "dev")]),
-            ("gamepad", &[("policy-core", "normal"), ("hidapi", "normal")]),
+            ("policy-space-gamepad", &[("policy-core", "normal"), ("hidapi", "normal")]),
             ("physics-bridge", &[("policy-core", "normal"), ("mujoco-rs", "normal")]),
             ("pca", &[]),
             ("evaluation", &[("policy-core", "normal"), ("physics-bridge", "normal"), ("pca", "normal")]),
@@ -51,8 +51,8 @@ fn the_architecture_as_drawn_has_no_breach() {
 fn a_crate_of_the_workspace_is_imported_only_where_allowed() {
     let metadata = metadata(
         &[
-            ("policy-core", &[("gamepad", "normal")]),
-            ("gamepad", &[]),
+            ("policy-core", &[("policy-space-gamepad", "normal")]),
+            ("policy-space-gamepad", &[]),
             ("trainer", &[("viewer", "dev"), ("evaluation", "normal")]),
             ("evaluation", &[("trainer", "dev")]),
             ("viewer", &[("trainer", "normal")]),
@@ -66,7 +66,7 @@ fn a_crate_of_the_workspace_is_imported_only_where_allowed() {
         [
             "evaluation imports trainer",
             "physics-rapier imports physics-bridge",
-            "policy-core imports gamepad",
+            "policy-core imports policy-space-gamepad",
             "trainer imports viewer",
             "viewer imports trainer",
         ]
@@ -78,13 +78,13 @@ fn a_dependency_with_an_owner_is_refused_elsewhere_even_for_tests() {
     let metadata = metadata(
         &[
             ("trainer", &[("mujoco-rs", "dev"), ("egui_plot", "normal")]),
-            ("gamepad", &[("wgpu-core", "build")]),
+            ("policy-space-gamepad", &[("wgpu-core", "build")]),
         ],
         &[],
     );
     let found = breaches(&metadata).unwrap();
     assert_eq!(found.len(), 3, "{found:?}");
-    assert_eq!(found[0], "gamepad imports wgpu-core: only viewer draws");
+    assert_eq!(found[0], "policy-space-gamepad imports wgpu-core: only viewer draws");
     assert_eq!(found[2], "trainer imports mujoco-rs: only physics-bridge speaks to the physics engine");
 }
 

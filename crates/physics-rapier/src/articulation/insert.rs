@@ -1,7 +1,9 @@
 //! Bodies, colliders and joints of a character, put into a world.
 
 use policy_core::BodyId;
-use rapier3d::dynamics::{JointAxis, MotorModel, RigidBodyActivation};
+use rapier3d::dynamics::{
+    GenericJoint, GenericJointBuilder, JointAxesMask, JointAxis, MotorModel, RigidBodyActivation,
+};
 use rapier3d::geometry::InteractionGroups;
 use rapier3d::math::Vector;
 use rapier3d_mjcf::MjcfMultibodyOptions;
@@ -14,19 +16,27 @@ const ROOT_DOFS: usize = 6;
 
 impl Articulation {
     /// Puts a character into a world, in the pose of its MJCF. Its colliders are in `groups`. They touch what the
-    /// groups let them touch, other characters included, and never each other. Allocates.
+    /// groups let them touch, other characters included. Of each other, those touch that do in MuJoCo by the `contype`
+    /// and `conaffinity` of the MJCF: the legs of the humanoid.
+    ///
+    /// Pairs that do not touch are held apart by disabled impulse joints, which have no row in the solver. They leave
+    /// with the character. Allocates.
     #[must_use]
     pub fn insert(model: &Model, world: &mut Sets<'_>, drive: Drive, groups: InteractionGroups) -> Self {
         let mut robot = model.robot().clone();
         for collider in robot.bodies.iter_mut().flat_map(|body| &mut body.colliders) {
             collider.set_collision_groups(groups);
         }
+        let contacts = match model.apart() {
+            Some(_) => MjcfMultibodyOptions::empty(),
+            None => MjcfMultibodyOptions::DISABLE_SELF_CONTACTS,
+        };
         let handles = robot.insert_using_multibody_joints(
             world.bodies,
             world.colliders,
             world.multibody_joints,
             world.impulse_joints,
-            MjcfMultibodyOptions::DISABLE_SELF_CONTACTS,
+            contacts,
         );
         let mut links = Vec::with_capacity(handles.bodies.len());
         for entry in handles.bodies.iter().flatten() {
@@ -36,12 +46,13 @@ impl Articulation {
             body.recompute_mass_properties_from_colliders(world.colliders);
             links.push(entry.body);
         }
+        let body_at =
+            |place: usize| handles.bodies[place].as_ref().expect("every body but the world is inserted").body;
+        for &[one, other] in model.apart().into_iter().flatten() {
+            world.impulse_joints.insert(body_at(one), body_at(other), no_contact(), false);
+        }
         let places = model.places();
-        let bodies: Vec<_> = places
-            .bodies
-            .iter()
-            .map(|&place| handles.bodies[place].as_ref().expect("every body but the world is inserted").body)
-            .collect();
+        let bodies: Vec<_> = places.bodies.iter().map(|&place| body_at(place)).collect();
         let joints: Vec<_> = places.joints.iter().map(|&place| &handles.joints[place]).collect();
         let joint = joints[0].joint.expect("the joints of an MJCF make a tree");
 
@@ -90,6 +101,13 @@ impl Articulation {
             .expect("a checked pose, and bodies that were just inserted");
         articulation
     }
+}
+
+/// A joint that joins nothing. Rapier skips contacts between its bodies, also while it is disabled.
+fn no_contact() -> GenericJoint {
+    let mut joint = GenericJointBuilder::new(JointAxesMask::empty()).contacts_enabled(false).build();
+    joint.set_enabled(false);
+    joint
 }
 
 /// For each body, the hinges from its parent to it, the parent's end first.

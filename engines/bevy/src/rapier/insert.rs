@@ -9,7 +9,7 @@ use policy_core::CharacterState;
 use policy_core::contract::Pose;
 
 use crate::axes;
-use crate::body::{self, BodyPose, PolicyBodies, PolicyBody};
+use crate::body::{self, BodyPose, PolicyBodies};
 use crate::character::{PolicyCharacter, PolicyController};
 use crate::messages::{CharacterError, CharacterProblem};
 
@@ -70,11 +70,7 @@ pub(super) fn put_in(
 /// An entity for each body.
 fn spawn_bodies(commands: &mut Commands, character: Entity, model: &Model) -> Vec<Entity> {
     let bodies = model.skeleton().bodies().iter().enumerate();
-    bodies.map(|(index, body)| spawn_body(commands, character, index, &body.name)).collect()
-}
-
-pub(super) fn spawn_body(commands: &mut Commands, character: Entity, index: usize, name: &str) -> Entity {
-    commands.spawn((PolicyBody { character, index }, Name::new(name.to_owned()))).id()
+    bodies.map(|(index, part)| body::spawn_body(commands, character, index, &part.name)).collect()
 }
 
 pub(super) fn spawn_links(commands: &mut Commands, character: Entity) -> Entity {

@@ -40,7 +40,7 @@ pub struct RapierCharacter {
     /// pack, 120 Hz for the humanoid, and one solver iteration; motion is then as in training.
     #[reflect(ignore)]
     pub drive: Drive,
-    /// What its colliders touch. They never touch each other.
+    /// What its colliders touch. Of each other, those touch that do in the pack's MJCF: the humanoid's legs.
     pub groups: CollisionGroups,
     /// Events of its colliders.
     pub events: ActiveEvents,

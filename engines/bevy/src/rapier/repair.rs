@@ -7,11 +7,11 @@ use bevy_rapier3d::plugin::context::systemparams::{ReadRapierContext, WriteRapie
 use bevy_rapier3d::prelude::{ColliderDisabled, RigidBodyDisabled};
 use policy_core::contract::Pose;
 
-use crate::body::{BodyPose, PolicyBody};
+use crate::body::{self, BodyPose, PolicyBody};
 use crate::character::{PolicyCharacter, PolicyController};
 use crate::messages::{CharacterError, CharacterProblem};
 
-use super::insert::{build, spawn_body, spawn_links};
+use super::insert::{build, spawn_links};
 use super::place::{settle, stand};
 use super::{Fault, Models, RapierArticulation, RapierCharacter, name_bodies, sets, world_of};
 
@@ -89,9 +89,10 @@ pub(super) fn rebuild(
             } else {
                 commands.entity(*entity).try_despawn();
                 let name = &model.skeleton().bodies()[index].name;
-                *entity = spawn_body(&mut commands, character, index, name);
+                *entity = body::spawn_body(&mut commands, character, index, name);
             }
         }
+        body::sort_bodies(&mut commands, character);
         commands.entity(own.links).try_despawn();
         own.links = spawn_links(&mut commands, character);
         own.articulation.clone().remove(&mut sets(&mut world));

@@ -21,17 +21,22 @@ pub fn game(hz: f64) -> App {
 
 /// The same with another folder of assets.
 pub fn game_with_assets(hz: f64, folder: &str) -> App {
+    game_of(hz, AssetPlugin { file_path: folder.into(), ..default() })
+}
+
+/// The same, and files that change are loaded again.
+pub fn game_that_watches(hz: f64, folder: &str) -> App {
+    let watch_for_changes_override = Some(true);
+    game_of(hz, AssetPlugin { file_path: folder.into(), watch_for_changes_override, ..default() })
+}
+
+fn game_of(hz: f64, assets: AssetPlugin) -> App {
     let mut app = App::new();
-    app.add_plugins((
-        MinimalPlugins,
-        TransformPlugin,
-        AssetPlugin { file_path: folder.into(), ..default() },
-        PolicySpacePlugins,
-    ))
-    .insert_resource(Time::<Fixed>::from_hz(hz))
-    .insert_resource(TimeUpdateStrategy::ManualDuration(Duration::from_secs_f64(1.0 / hz)))
-    .init_resource::<Heard>()
-    .add_systems(Last, listen);
+    app.add_plugins((MinimalPlugins, TransformPlugin, assets, PolicySpacePlugins))
+        .insert_resource(Time::<Fixed>::from_hz(hz))
+        .insert_resource(TimeUpdateStrategy::ManualDuration(Duration::from_secs_f64(1.0 / hz)))
+        .init_resource::<Heard>()
+        .add_systems(Last, listen);
     app.finish();
     app.cleanup();
     app.world_mut().spawn((
@@ -53,7 +58,7 @@ pub struct Heard {
     pub errors: Vec<String>,
 }
 
-fn listen(
+pub fn listen(
     mut heard: ResMut<Heard>,
     mut fell: MessageReader<Fell>,
     mut rose: MessageReader<Rose>,
