@@ -148,9 +148,9 @@ impl Arena {
         if pads.len() != self.players.len() {
             return Err(ArenaError::Pads { expected: self.players.len(), found: pads.len() });
         }
-        for shover in 0..pads.len() {
-            if self.players[shover].presses(pads[shover], SHOVE_BUTTON) {
-                self.shove(pads[shover].heading().direction())?;
+        for (index, &pad) in pads.iter().enumerate() {
+            if self.players[index].presses(pad, SHOVE_BUTTON) {
+                self.shove(pad.heading().direction())?;
             }
         }
         for (index, (player, &pad)) in self.players.iter_mut().zip(pads).enumerate() {
