@@ -238,6 +238,54 @@ fn what_the_game_removes_is_put_back() {
     assert!(walks(&app, character));
 }
 
+/// Components that the plug-in itself added, one after the other, in mid-walk.
+#[test]
+fn what_the_plug_in_added_is_put_back_too() {
+    let mut app = game(64.0);
+    let character = spawn(&mut app, Vec3::ZERO);
+    app.world_mut().entity_mut(character).insert(walk_to(Vec3::new(0.0, 0.0, -1000.0)));
+    run(&mut app, 2.0);
+    type Removal = fn(&mut World, Entity);
+    let removals: [(&str, Removal); 6] = [
+        ("PolicyController", |world, character| {
+            world.entity_mut(character).remove::<PolicyController>();
+        }),
+        ("PolicyBodies", |world, character| {
+            world.entity_mut(character).remove::<PolicyBodies>();
+        }),
+        ("BodyPose", |world, character| {
+            world.entity_mut(character).remove::<bevy_policy_space::BodyPose>();
+        }),
+        ("RapierArticulation", |world, character| {
+            world.entity_mut(character).remove::<RapierArticulation>();
+        }),
+        ("Transform of a body", |world, character| {
+            let body = world.get::<PolicyBodies>(character).expect("bodies").entities()[3];
+            world.entity_mut(body).remove::<Transform>();
+        }),
+        ("PolicyBody", |world, character| {
+            let body = world.get::<PolicyBodies>(character).expect("bodies").entities()[0];
+            world.entity_mut(body).remove::<PolicyBody>();
+        }),
+    ];
+    for (name, remove) in removals {
+        let before = place(&app, character);
+        remove(app.world_mut(), character);
+        run(&mut app, 3.0);
+        assert!(walks(&app, character), "after {name} was removed: {:?}", heard(&app));
+        let after = place(&app, character);
+        assert!(after.distance(before) > 0.8, "it walks on after {name} was removed, {before} {after}");
+        let bodies = app.world().get::<PolicyBodies>(character).expect("bodies").entities();
+        let index = |&entity: &Entity| app.world().get::<PolicyBody>(entity).expect("a body").index;
+        assert!(bodies.iter().map(index).eq(0..15), "{name}: bodies in the order of the skeleton");
+        let pelvis = place(&app, body(&app, character, "pelvis"));
+        assert!(pelvis.xz().distance(after.xz()) < 0.2, "{name}: {pelvis} {after}");
+        let mut all = app.world_mut().query::<&PolicyBody>();
+        assert_eq!(all.iter(app.world()).count(), 15, "{name}");
+    }
+    assert_eq!(heard(&app).fell, 0, "{:?}", heard(&app));
+}
+
 #[test]
 fn a_body_taken_out_of_rapier_is_built_anew() {
     let mut app = game(64.0);

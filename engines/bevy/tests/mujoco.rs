@@ -136,6 +136,16 @@ fn pushes_despawn_and_a_removed_component() {
     run(&mut app, 0.5);
     assert_ne!(body(&app, character, "head"), head);
 
+    app.world_mut().entity_mut(character).insert(walk_to(Vec3::new(0.0, 0.0, -1000.0)));
+    app.world_mut().entity_mut(character).remove::<PolicyController>();
+    run(&mut app, 3.0);
+    assert!(report(&app, character).velocity.length() > 0.5, "it walks on with a new controller");
+    app.world_mut().entity_mut(character).remove::<MujocoBody>();
+    run(&mut app, 3.0);
+    assert!(report(&app, character).velocity.length() > 0.5, "it walks on with a new body");
+    let bodies = app.world().get::<PolicyBodies>(character).expect("bodies").entities();
+    assert_eq!(bodies.len(), 15);
+
     app.world_mut().despawn(other);
     app.world_mut().entity_mut(character).remove::<PolicyCharacter>();
     run(&mut app, 0.2);

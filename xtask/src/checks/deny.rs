@@ -20,6 +20,9 @@ const VERSION: &str = "0.20.2";
 /// Where the advisory database is fetched from; the default of cargo-deny.
 const DATABASE_HOST: &str = "github.com";
 
+/// The workspace of the Bevy plug-in, with a `deny.toml` of its own: it draws and opens windows.
+const PLUG_IN: [&str; 2] = ["--manifest-path", "engines/bevy/Cargo.toml"];
+
 /// Runs the checks that need no network: licences, banned crates and sources.
 ///
 /// # Errors
@@ -27,7 +30,9 @@ const DATABASE_HOST: &str = "github.com";
 pub fn rules(workspace: &Workspace) -> Result<Verdict> {
     provide(workspace)?;
     // A rule may name a crate that does not import the banned one today.
-    run(deny(workspace).args(["check", "--allow", "unused-wrapper", "licenses", "bans", "sources"]))?;
+    let rules = ["check", "--allow", "unused-wrapper", "licenses", "bans", "sources"];
+    run(deny(workspace).args(rules))?;
+    run(deny(workspace).args(PLUG_IN).args(rules)).context("engines/bevy")?;
     Ok(Verdict::Passed)
 }
 
@@ -54,6 +59,7 @@ pub fn advisories(workspace: &Workspace) -> Result<Verdict> {
         eprintln!("xtask: no network to {DATABASE_HOST}; checking with the advisories of the last fetch");
     }
     run(deny(workspace).args(["--offline", "check", "advisories"]))?;
+    run(deny(workspace).args(PLUG_IN).args(["--offline", "check", "advisories"])).context("engines/bevy")?;
     Ok(Verdict::Passed)
 }
 

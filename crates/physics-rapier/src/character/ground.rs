@@ -10,6 +10,10 @@ use crate::model::Model;
 const MOTORS_HZ: f32 = 60.0;
 const MOTORS_SUBSTEPS: usize = 2;
 
+/// Sweeps of Rapier's solver over the contacts in each substep. With one, legs that touch throw the character down: after
+/// 27 % of rolls, against 2 % with four. Rapier takes two contacts of one multibody for independent.
+const SWEEPS: usize = 4;
+
 /// Physics steps in a control tick with [`Drive::Motors`].
 pub(super) fn motor_steps(model: &Model) -> u32 {
     (MOTORS_HZ / model.control_hz()).round().max(1.0) as u32
@@ -31,6 +35,7 @@ pub(crate) fn empty_world(model: &Model, drive: Drive) -> PhysicsWorld {
         Drive::Torques => (model.timestep_secs() as f32, 1),
         Drive::Motors => (1.0 / (model.control_hz() * motor_steps(model) as f32), MOTORS_SUBSTEPS),
     };
+    parameters.num_internal_pgs_iterations = SWEEPS;
     for mut collider in model.ground() {
         collider.set_collision_groups(InteractionGroups::all());
         world.colliders.insert(collider);

@@ -16,7 +16,8 @@ pub fn window() -> impl PluginGroup {
     })
 }
 
-/// Floor, light and camera. With `POLICY_SPACE_PICTURE=FILE.png` it saves a picture after some seconds and exits.
+/// Floor, light and camera. With `POLICY_SPACE_PICTURE=FILE.png` it saves a picture after some seconds, logs the mean time of
+/// a frame up to then, and exits.
 pub fn scene(app: &mut App) {
     app.add_systems(Startup, build_scene).add_systems(PostUpdate, follow.before(TransformSystems::Propagate));
     if let Ok(file) = std::env::var("POLICY_SPACE_PICTURE") {
@@ -64,10 +65,23 @@ fn follow(
 #[derive(Resource)]
 struct Picture(String);
 
-fn take_picture(mut commands: Commands, time: Res<Time>, picture: Res<Picture>, mut taken: Local<f32>) {
+fn take_picture(
+    mut commands: Commands,
+    time: Res<Time>,
+    real: Res<Time<Real>>,
+    picture: Res<Picture>,
+    mut taken: Local<f32>,
+    mut frames: Local<(u32, f32)>,
+) {
+    // Bevy's clock is slower than the real one where a frame takes over a quarter of a second.
     let now = time.elapsed_secs();
+    // The first seconds load assets and compile shaders.
+    if now > 4.0 && *taken == 0.0 {
+        *frames = (frames.0 + 1, frames.1 + real.delta_secs());
+    }
     if now > 8.0 && *taken == 0.0 {
         *taken = now;
+        info!("{:.1} ms a frame", 1000.0 * frames.1 / frames.0 as f32);
         commands.spawn(Screenshot::primary_window()).observe(save_to_disk(picture.0.clone()));
     } else if *taken > 0.0 && now > *taken + 4.0 {
         commands.write_message(AppExit::Success);

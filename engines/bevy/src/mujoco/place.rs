@@ -18,15 +18,23 @@ pub(super) fn poses(controller: &PolicyController) -> Vec<Isometry3d> {
 pub(super) fn put_back(
     mut commands: Commands,
     posed: Query<Entity, (With<MujocoBody>, Without<BodyPose>)>,
-    mut characters: Query<(Entity, &mut MujocoBody)>,
-    bodies: Query<(), (With<PolicyBody>, With<BodyPose>)>,
+    mut characters: Query<(Entity, &mut MujocoBody, &mut PolicyController)>,
+    bodies: Query<(), (With<PolicyBody>, With<BodyPose>, With<Transform>)>,
+    mut world: ResMut<MujocoWorld>,
     mut errors: MessageWriter<CharacterError>,
 ) {
     for character in &posed {
         commands.entity(character).insert(BodyPose::default());
         errors.write(CharacterProblem::Component { component: "BodyPose" }.of(character));
     }
-    for (character, mut own) in &mut characters {
+    for (character, mut own, mut controller) in &mut characters {
+        // One that was removed, and for which one that knows no body was put in its place.
+        if !controller.embodied
+            && let Ok(described) = world.described(&own.pack)
+        {
+            (controller.rest, controller.embodied) = (described.rest, true);
+            errors.write(CharacterProblem::Component { component: "PolicyController" }.of(character));
+        }
         if own.entities.iter().all(|&entity| bodies.contains(entity)) {
             continue;
         }

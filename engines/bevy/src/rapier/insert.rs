@@ -120,10 +120,19 @@ pub(super) fn take_out(
     removed: On<Remove<RapierArticulation>>,
     bodies: Query<&RapierArticulation>,
     mut context: WriteRapierContext,
+    mut commands: Commands,
 ) {
-    let (Ok(own), Some(mut world)) = (bodies.get(removed.entity), world_of(&mut context)) else { return };
+    let character = removed.entity;
+    let (Ok(own), Some(mut world)) = (bodies.get(character), world_of(&mut context)) else { return };
     own.articulation.clone().remove(&mut sets(&mut world));
     name_bodies(&mut world);
+    // A character that is despawned takes its bodies along. One that is not gets new ones.
+    let links = own.links;
+    commands.queue(move |world: &mut World| {
+        let Ok(mut character) = world.get_entity_mut(character) else { return };
+        character.despawn_related::<PolicyBodies>();
+        world.try_despawn(links).ok();
+    });
 }
 
 /// Takes everything away that came with `PolicyCharacter`, when the game removes that alone.
@@ -131,12 +140,8 @@ pub(super) fn forget(removed: On<Remove<PolicyCharacter>>, mut commands: Command
     let character = removed.entity;
     commands.queue(move |world: &mut World| {
         // A character that is despawned takes its bodies along.
-        let Ok(mut character) = world.get_entity_mut(character) else { return };
-        let links = character.get::<RapierArticulation>().map(|own| own.links);
-        character.despawn_related::<PolicyBodies>();
-        character.remove::<(RapierArticulation, PolicyController, BodyPose)>();
-        if let Some(links) = links {
-            world.try_despawn(links).ok();
+        if let Ok(mut character) = world.get_entity_mut(character) {
+            character.remove::<(RapierArticulation, PolicyController, BodyPose)>();
         }
     });
 }

@@ -73,7 +73,7 @@ pub(super) fn teleport(
         &mut RapierArticulation,
         &mut PolicyController,
     )>,
-    mut bodies: Query<&mut BodyPose, (With<PolicyBody>, Without<RapierArticulation>)>,
+    mut bodies: Query<&mut BodyPose, (With<PolicyBody>, With<Transform>, Without<RapierArticulation>)>,
     mut context: WriteRapierContext,
     mut errors: MessageWriter<CharacterError>,
 ) {
@@ -103,7 +103,7 @@ pub(super) fn settle(
     controller: &mut PolicyController,
     world: &RapierContextMut,
     pose: &mut BodyPose,
-    bodies: &mut Query<&mut BodyPose, (With<PolicyBody>, Without<RapierArticulation>)>,
+    bodies: &mut Query<&mut BodyPose, (With<PolicyBody>, With<Transform>, Without<RapierArticulation>)>,
 ) {
     let (set, joints) = (&world.rigidbody_set.bodies, &world.joints.multibody_joints);
     let ground = own.good.point.y;

@@ -20,8 +20,8 @@ pub(super) fn put_back(
     mut commands: Commands,
     wanted: Query<Entity, (With<PolicyCharacter>, Without<RapierCharacter>)>,
     posed: Query<Entity, (With<RapierArticulation>, Without<BodyPose>)>,
-    mut characters: Query<(Entity, &mut RapierArticulation)>,
-    bodies: Query<(), (With<PolicyBody>, With<BodyPose>)>,
+    mut characters: Query<(Entity, &mut RapierArticulation, &PolicyController)>,
+    bodies: Query<(), (With<PolicyBody>, With<BodyPose>, With<Transform>)>,
     mut errors: MessageWriter<CharacterError>,
 ) {
     for character in &wanted {
@@ -32,10 +32,18 @@ pub(super) fn put_back(
         commands.entity(character).insert(BodyPose::default());
         errors.write(CharacterProblem::Component { component: "BodyPose" }.of(character));
     }
-    for (character, mut own) in &mut characters {
-        if own.fault.is_none() && !own.entities.iter().all(|&entity| bodies.contains(entity)) {
+    for (character, mut own, controller) in &mut characters {
+        let component = if !controller.embodied {
+            // It was removed, and one that knows no body was put in its place.
+            "PolicyController"
+        } else if !own.entities.iter().all(|&entity| bodies.contains(entity)) {
+            "PolicyBody"
+        } else {
+            continue;
+        };
+        if own.fault.is_none() {
             own.fault = Some(Fault::KeepPose);
-            errors.write(CharacterProblem::Component { component: "PolicyBody" }.of(character));
+            errors.write(CharacterProblem::Component { component }.of(character));
         }
     }
 }
@@ -71,7 +79,7 @@ pub(super) fn rebuild(
         &RapierCharacter,
         &mut BodyPose,
     )>,
-    mut bodies: Query<&mut BodyPose, (With<PolicyBody>, Without<RapierArticulation>)>,
+    mut bodies: Query<&mut BodyPose, (With<PolicyBody>, With<Transform>, Without<RapierArticulation>)>,
     mut context: WriteRapierContext,
 ) {
     let Some(mut world) = world_of(&mut context) else { return };
@@ -98,6 +106,7 @@ pub(super) fn rebuild(
         own.articulation.clone().remove(&mut sets(&mut world));
         let (articulation, rest, standing) = build(&model, wanted, &mut world, &own.entities, own.links);
         (own.articulation, controller.rest, own.stand, own.fault) = (articulation, rest, standing, None);
+        controller.embodied = true;
         if !keeps || own.articulation.set_pose(&mut sets(&mut world), &kept.qpos, &kept.qvel).is_err() {
             stand(&mut own.articulation, &own.stand, &mut world, own.good)
                 .expect("a checked pose of bodies just built");
