@@ -11,6 +11,7 @@ mod fuzz;
 mod hostile;
 mod onnx;
 mod setup;
+mod web;
 mod workspace;
 
 use std::ffi::OsString;
@@ -73,6 +74,10 @@ enum Verb {
     /// Each file is a sound file of the project with a fault put in. The time and memory of each reader are bounded.
     /// One file of each finding is kept in out/hostile.
     Hostile(hostile::HostileArgs),
+    /// Build the demo as a web page in out/web and serve it on this machine.
+    ///
+    /// Installs the target wasm32-unknown-unknown, and the binding generator in third_party/tools, by itself.
+    Web(web::WebArgs),
     /// List and test connected gamepads: `cargo xtask pad doctor`.
     Pad {
         /// Arguments of the program `pad`. `doctor` lists devices and shows what they report.
@@ -146,6 +151,7 @@ fn dispatch(verb: Verb) -> Result<ExitCode> {
         Verb::Determinism(arguments) => determinism::run(&workspace, &arguments)?,
         Verb::Fuzz(arguments) => fuzz::run(&workspace, &arguments)?,
         Verb::Hostile(arguments) => hostile::run(&workspace, &arguments)?,
+        Verb::Web(arguments) => web::run(&workspace, &arguments)?,
         Verb::Pad { arguments } => {
             let mut pad = workspace.cargo();
             pad.args(["run", "--quiet", "-p", "policy-space-gamepad", "--bin", "pad", "--"]).args(arguments);

@@ -1,6 +1,7 @@
 //! The demo: draws characters, reads pad, keyboard and mouse, and shows what the policies do.
 //!
-//! Without the feature `native` there is what draws: [`render`], [`mesh`], [`camera`] and [`gpu`].
+//! Without the feature `native` there is what draws: [`render`], [`mesh`], [`camera`] and [`gpu`]. The page in `web/` is made
+//! of these.
 
 #[cfg(feature = "native")]
 pub mod analysis;

@@ -1,7 +1,8 @@
 //! The ways in which a camera moves.
 
 /// How the camera moves.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[cfg_attr(feature = "native", derive(serde::Serialize, serde::Deserialize))]
 pub enum CameraMode {
     /// Keeps its direction and follows the character.
     #[default]

@@ -1,0 +1,182 @@
+//! The world and who steers it: the player, the fixed script or a replay. Always records.
+
+use glam::{Quat, Vec3};
+use lockstep::{Arena, ArenaConfig, ArenaError, SCRIPT_TICKS, script_pad};
+use policy_core::{CharacterPack, FixedRate, GamepadState, Heading};
+use replay::{Mismatch, Pad, Playback, Recorder, Replay, ReplayError};
+use wasm_bindgen::JsError;
+
+/// Where bodies are: origins of their frames and rotations, for each character, then for each crate.
+pub type Poses = Vec<(Vec3, Quat)>;
+
+/// Who steers.
+enum Input {
+    Player,
+    Script,
+    Replay(Box<Playback>),
+    /// A script or a replay is over: the world waits.
+    Over,
+}
+
+/// Why a tick was not run.
+enum Stopped {
+    Arena(ArenaError),
+    Replay(ReplayError),
+    Mismatch(Mismatch),
+}
+
+pub struct Game {
+    pack: Vec<u8>,
+    config: ArenaConfig,
+    arena: Arena,
+    rate: FixedRate,
+    recorder: Recorder,
+    input: Input,
+    pads: Vec<Pad>,
+    /// Before the last tick and after it.
+    poses: [Poses; 2],
+}
+
+impl Game {
+    /// A world of so many characters.
+    pub fn new(pack: Vec<u8>, players: usize) -> Result<Self, JsError> {
+        let config = ArenaConfig { players, ..ArenaConfig::default() };
+        let arena = Arena::new(&pack, config)?;
+        let recorder = Recorder::new(arena.header())?;
+        let rate = FixedRate::new(1.0 / arena.tick_secs());
+        let poses = [poses_of(&arena), poses_of(&arena)];
+        let pads = vec![Pad::default(); players];
+        Ok(Self { pack, config, arena, rate, recorder, input: Input::Player, pads, poses })
+    }
+
+    pub fn pack(&self) -> &CharacterPack {
+        self.arena.pack()
+    }
+
+    pub fn arena(&self) -> &Arena {
+        &self.arena
+    }
+
+    pub fn ticks(&self) -> u32 {
+        self.arena.tick_count() as u32
+    }
+
+    pub fn tick_secs(&self) -> f32 {
+        self.arena.tick_secs()
+    }
+
+    pub fn hash(&mut self) -> u64 {
+        self.arena.hash()
+    }
+
+    pub fn replay(&self) -> &Replay {
+        self.recorder.replay()
+    }
+
+    pub fn mode(&self) -> &'static str {
+        match self.input {
+            Input::Player => "recording",
+            Input::Script => "script",
+            Input::Replay(_) => "playing",
+            Input::Over => "over",
+        }
+    }
+
+    /// Begins anew.
+    pub fn restart(&mut self, script: bool) -> Result<(), JsError> {
+        let pack = std::mem::take(&mut self.pack);
+        *self = Self::new(pack, self.config.players)?;
+        if script {
+            self.input = Input::Script;
+        }
+        Ok(())
+    }
+
+    /// Plays a replay of this world from the start.
+    pub fn play(&mut self, replay: &Replay) -> Result<(), JsError> {
+        self.arena.header().expect(replay.header())?;
+        self.restart(false)?;
+        self.input = Input::Replay(Box::new(Playback::new(replay)));
+        Ok(())
+    }
+
+    /// Runs the ticks that are due.
+    pub fn advance(&mut self, secs: f32, pad: &GamepadState, camera: Heading) -> Result<u32, JsError> {
+        let due = self.rate.advance(secs);
+        for tick in 0..due {
+            match self.tick(pad, camera) {
+                Ok(true) => {}
+                Ok(false) => return Ok(tick),
+                Err(stopped) => {
+                    self.input = Input::Over;
+                    return Err(match stopped {
+                        Stopped::Arena(error) => error.into(),
+                        Stopped::Replay(error) => error.into(),
+                        Stopped::Mismatch(error) => error.into(),
+                    });
+                }
+            }
+        }
+        Ok(due)
+    }
+
+    /// One tick; false when there is nothing more to play.
+    fn tick(&mut self, pad: &GamepadState, camera: Heading) -> Result<bool, Stopped> {
+        let tick = self.ticks();
+        match &mut self.input {
+            Input::Player => self.pads[0] = Pad::from_state(pad, camera),
+            Input::Script if tick >= SCRIPT_TICKS => self.input = Input::Over,
+            Input::Script => {
+                self.pads.iter_mut().enumerate().for_each(|(player, pad)| *pad = script_pad(tick, player));
+            }
+            Input::Replay(playback) => match playback.next_pads() {
+                Some(pads) => self.pads.copy_from_slice(pads),
+                None => self.input = Input::Over,
+            },
+            Input::Over => {}
+        }
+        if matches!(self.input, Input::Over) {
+            return Ok(false);
+        }
+        self.arena.tick(&self.pads).map_err(Stopped::Arena)?;
+        let hash = self.arena.hash();
+        self.recorder.push(&self.pads, hash).map_err(Stopped::Replay)?;
+        if let Input::Replay(playback) = &mut self.input {
+            playback.check(hash).map_err(Stopped::Mismatch)?;
+        }
+        let [before, now] = &mut self.poses;
+        std::mem::swap(before, now);
+        *now = poses_of(&self.arena);
+        Ok(true)
+    }
+
+    /// Where everything is now, between the last two ticks.
+    pub fn poses(&self) -> Poses {
+        let alpha = self.rate.fraction();
+        let between = |(a, b): (&(Vec3, Quat), &(Vec3, Quat))| (a.0.lerp(b.0, alpha), a.1.slerp(b.1, alpha));
+        self.poses[0].iter().zip(&self.poses[1]).map(between).collect()
+    }
+
+    /// Gait, skill and speed of the player.
+    pub fn doing(&self) -> String {
+        let Some(player) = self.arena.player(0) else { return String::new() };
+        let pack = self.pack();
+        let nodes = pack.graph().nodes();
+        let what = match player.report.skill {
+            Some(skill) => pack.skills()[skill.skill.index()].name.clone(),
+            None => {
+                let at = player.report.position;
+                let (from, to) = (&nodes[at.from.index()].name, &nodes[at.to.index()].name);
+                if at.t < 0.05 || from == to { from.clone() } else { format!("{from} to {to}") }
+            }
+        };
+        let speed = player.state.root().linear_velocity.truncate().length();
+        format!("{} at {speed:.1} m/s", what.replace('_', " "))
+    }
+}
+
+fn poses_of(arena: &Arena) -> Poses {
+    let players = (0..arena.config().players).filter_map(|index| arena.player(index));
+    let bodies = players.flat_map(|player| player.state.bodies.iter().map(|b| (b.position, b.rotation)));
+    bodies.chain(arena.crates().map(|(_, at, rotation)| (at, rotation))).collect()
+}

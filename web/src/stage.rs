@@ -1,0 +1,162 @@
+//! What is seen: camera, renderer and the canvas.
+
+use std::sync::Arc;
+
+use glam::{Mat4, Vec3};
+use physics_rapier::{Character, Model, Pose, PropShape};
+use policy_core::{CharacterState, Heading};
+use viewer::camera::Camera;
+use viewer::gpu::Gpu;
+use viewer::mesh::{Rig, SkinnedMesh};
+use viewer::render::{Appearance, Figure, Marker, RenderConfig, Renderer, Scene, Solid};
+use wasm_bindgen::JsError;
+
+use crate::game::Game;
+
+/// Clothes of the players, and of the crates.
+const TINTS: [[f32; 4]; 4] =
+    [[0.0; 4], [0.12, 0.42, 0.78, 0.9], [0.16, 0.55, 0.30, 0.9], [0.75, 0.35, 0.12, 0.9]];
+const CRATE: [f32; 4] = [0.62, 0.42, 0.22, 1.0];
+
+pub struct Stage {
+    gpu: Gpu,
+    surface: wgpu::Surface<'static>,
+    configuration: wgpu::SurfaceConfiguration,
+    renderer: Renderer,
+    camera: Camera,
+    scene: Scene,
+}
+
+impl Stage {
+    /// Opens a canvas to draw the characters of `game` with a mesh.
+    pub async fn open(
+        canvas: web_sys::HtmlCanvasElement,
+        game: &Game,
+        mesh: &[u8],
+    ) -> Result<Self, JsError> {
+        let size = [canvas.width().max(1), canvas.height().max(1)];
+        let rig = rig(game)?;
+        let mesh = SkinnedMesh::from_bytes(mesh, &rig)?;
+        let appearance = Appearance::new(rig.skeleton(), Some(mesh));
+        let (gpu, surface, adapter) = Gpu::for_target(wgpu::SurfaceTarget::Canvas(canvas)).await?;
+        let mut configuration = surface
+            .get_default_config(&adapter, size[0], size[1])
+            .ok_or_else(|| JsError::new("expected a canvas that the adapter can draw into, found none"))?;
+        let formats = surface.get_capabilities(&adapter).formats;
+        if let Some(plain) = formats.iter().find(|format| !format.is_srgb()) {
+            configuration.format = *plain;
+        }
+        surface.configure(&gpu.device, &configuration);
+        let config = RenderConfig::for_adapter(gpu.is_software);
+        let renderer = Renderer::new(&gpu, configuration.format, config, appearance);
+        let mut stage =
+            Self { gpu, surface, configuration, renderer, camera: Camera::default(), scene: Scene::default() };
+        stage.reset(game);
+        Ok(stage)
+    }
+
+    pub fn adapter(&self) -> &str {
+        &self.gpu.adapter_name
+    }
+
+    pub fn heading(&self) -> Heading {
+        self.camera.heading()
+    }
+
+    pub fn turn(&mut self, x: f32, y: f32) {
+        self.camera.turn(glam::Vec2::new(x, y));
+    }
+
+    pub fn zoom(&mut self, factor: f32) {
+        self.camera.zoom(factor);
+    }
+
+    pub fn resize(&mut self, [width, height]: [u32; 2]) {
+        let most = self.gpu.device.limits().max_texture_dimension_2d;
+        let size = [width.clamp(1, most), height.clamp(1, most)];
+        if size != [self.configuration.width, self.configuration.height] {
+            [self.configuration.width, self.configuration.height] = size;
+            self.surface.configure(&self.gpu.device, &self.configuration);
+        }
+    }
+
+    /// The camera behind the player again.
+    pub fn reset(&mut self, game: &Game) {
+        self.camera = Camera::default();
+        if let Some(player) = game.arena().player(0) {
+            self.camera.set_size(player.state.root_height());
+            self.camera.settle(player.state.root().position, player.state.ground_height);
+        }
+    }
+
+    /// The camera takes `secs` to follow the player.
+    pub fn follow(&mut self, secs: f32, stick: [f32; 2], game: &Game) {
+        let (Some(player), Some((root, _))) = (game.arena().player(0), game.poses().first().copied()) else {
+            return;
+        };
+        let heading = Heading::from_rotation(player.state.root().rotation);
+        self.camera.advance(secs.min(0.1), stick, root, heading, player.state.ground_height);
+    }
+
+    /// Draws; false when the canvas gives no picture.
+    pub fn draw(&mut self, game: &Game) -> bool {
+        self.set_scene(game);
+        let texture = match self.surface.get_current_texture() {
+            wgpu::CurrentSurfaceTexture::Success(texture)
+            | wgpu::CurrentSurfaceTexture::Suboptimal(texture) => texture,
+            wgpu::CurrentSurfaceTexture::Outdated | wgpu::CurrentSurfaceTexture::Lost => {
+                self.surface.configure(&self.gpu.device, &self.configuration);
+                return false;
+            }
+            _ => return false,
+        };
+        let view = texture.texture.create_view(&wgpu::TextureViewDescriptor::default());
+        let mut encoder = self.gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
+        let size = [self.configuration.width, self.configuration.height];
+        self.renderer.draw(&mut encoder, &view, size, &self.scene);
+        self.gpu.queue.submit([encoder.finish()]);
+        self.gpu.queue.present(texture);
+        true
+    }
+
+    fn set_scene(&mut self, game: &Game) {
+        let scene = &mut self.scene;
+        scene.view = self.camera.view(0.0);
+        scene.focus = scene.view.target.with_z(0.0);
+        scene.figures.clear();
+        scene.things.clear();
+        let poses = game.poses();
+        let bodies = game.pack().skeleton().body_count();
+        let players = game.arena().config().players;
+        let (characters, crates) = poses.split_at(players * bodies);
+        for (index, own) in characters.chunks_exact(bodies).enumerate() {
+            scene.figures.push(Figure {
+                positions: own.iter().map(|pose| pose.0).collect(),
+                rotations: own.iter().map(|pose| pose.1).collect(),
+                tint: TINTS[index % TINTS.len()],
+                ground: 0.0,
+                slope: [0.0; 2],
+            });
+        }
+        for (&(at, rotation), (shape, ..)) in crates.iter().zip(game.arena().crates()) {
+            let (solid, half) = match shape {
+                PropShape::Box { half_extents } => (Solid::Cube, Vec3::from_array(half_extents)),
+                PropShape::Ball { radius } => (Solid::Ball, Vec3::splat(radius)),
+            };
+            let place = Mat4::from_scale_rotation_translation(half, rotation, at);
+            scene.things.push(Marker { solid, place, colour: CRATE });
+        }
+    }
+}
+
+/// The bodies with all joints at zero and the root upright at the origin: what the mesh is bound to.
+fn rig(game: &Game) -> Result<Rig, JsError> {
+    let model = Model::for_pack(game.pack())?;
+    let mut character = Character::new(&model);
+    let Pose { qpos, qvel } = Pose::new(model.skeleton());
+    character.set_pose(&qpos, &qvel)?;
+    let mut state = CharacterState::new(model.skeleton());
+    character.sense_into(&mut state);
+    let rest = state.bodies.iter().map(|body| body.position).collect();
+    Ok(Rig::new(Arc::clone(model.skeleton()), rest))
+}

@@ -1,0 +1,204 @@
+//! Plays in the browser and natively, and compares the states.
+
+use std::path::{Path, PathBuf};
+use std::thread;
+use std::time::{Duration, Instant};
+
+use anyhow::{Context, Result, ensure};
+use serde_json::{Value, json};
+
+use super::WebArgs;
+use super::browser::Browser;
+use super::server::Server;
+use crate::workspace::{Workspace, output_of};
+
+/// Most bytes of a first load, compressed, and most milliseconds to the first picture.
+const MOST_BYTES: u64 = 6 << 20;
+const MOST_FIRST_FRAME_MS: f64 = 3000.0;
+/// Ticks of the script.
+const SCRIPT_TICKS: u64 = 600;
+/// The page may be slower than the clock by this much.
+const PATIENCE: Duration = Duration::from_secs(180);
+/// Shift in the WebDriver protocol.
+const SHIFT: &str = "\u{e008}";
+
+/// Checks the page of a folder.
+///
+/// # Errors
+/// When a state differs from the native one, the page complains, or a bound is broken.
+pub fn run(workspace: &Workspace, folder: PathBuf, arguments: &WebArgs) -> Result<()> {
+    let out = workspace.root().join("out");
+    let server = Server::start(folder, 0)?;
+    let browser = Browser::start()?;
+    let page = format!("http://{}/", server.address());
+
+    // The fixed input, which has everything in it.
+    browser.open(&format!("{page}?input=script"))?;
+    let start = wait_for(&browser, |state| state["firstFrameMs"].is_number())?;
+    let first_load_bytes = server.sent();
+    let done = wait_for(&browser, |state| state["mode"] == "over")?;
+    ensure!(done["ticks"] == json!(SCRIPT_TICKS), "expected {SCRIPT_TICKS} ticks, found {}", done["ticks"]);
+    browser.picture(&out.join("web-script.png"))?;
+    let native = native(workspace, "determinism", &["--players", "1"])?;
+
+    // Keys, as a player presses them.
+    browser.open(&page)?;
+    wait_for(&browser, |state| state["ticks"].as_u64() > Some(15))?;
+    for (secs, down, keys) in [
+        (3.0, true, &["w"][..]),
+        (3.0, true, &[SHIFT]),
+        (1.0, false, &[SHIFT]),
+        (2.5, true, &["e"]),
+        (0.3, false, &["e"]),
+        (0.3, true, &["q"]),
+        (5.0, false, &["q", "w"]),
+        (2.0, true, &["d", "c"]),
+    ] {
+        browser.keys(down, keys)?;
+        thread::sleep(Duration::from_secs_f64(secs));
+    }
+    browser.keys(false, &["d", "c"])?;
+    wait_for(&browser, |state| state["ticks"].as_u64() >= Some(SCRIPT_TICKS))?;
+    browser.picture(&out.join("web-keys.png"))?;
+    let link = browser.run("return window.policySpaceLink()")?;
+    let link = link.as_str().context("expected a link, found none")?;
+    let file = out.join("web-keys.link");
+    std::fs::write(&file, link).with_context(|| format!("write {}", file.display()))?;
+    let played = native_replay(workspace, &file)?;
+    let state = state_of(&browser)?;
+
+    let soak =
+        if arguments.soak_minutes > 0.0 { soak(&browser, arguments.soak_minutes)? } else { Value::Null };
+    let complaints = browser.complaints()?;
+    drop(browser);
+    let report = json!({
+        "native_hash": native["hash"],
+        "web_hash": done["hash"],
+        "keys_ticks": played["ticks"],
+        "keys_equal_natively": played["equal"],
+        "first_load_bytes": first_load_bytes,
+        "first_frame_ms": start["firstFrameMs"],
+        "web_fps": state["fps"],
+        "web_physics_ms_per_tick": state["physicsMs"],
+        "native_physics_ms_per_tick": native["seconds"].as_f64().map(|secs| secs * 1e3 / SCRIPT_TICKS as f64),
+        "native_fps": if arguments.skip_native_fps { Value::Null } else { native_fps(workspace)? },
+        "adapter": state["adapter"],
+        "soak": soak,
+        "complaints": complaints,
+    });
+    if arguments.json {
+        println!("{report}");
+    } else {
+        println!("{report:#}");
+    }
+    verdict(&report)
+}
+
+fn verdict(report: &Value) -> Result<()> {
+    let (native, web) = (&report["native_hash"], &report["web_hash"]);
+    ensure!(
+        native.is_string() && native == web,
+        "expected the state {native} of the native run, found {web}"
+    );
+    ensure!(report["keys_equal_natively"] == true, "the keys of the page give another state natively");
+    ensure!(
+        report["complaints"].as_array().is_some_and(Vec::is_empty),
+        "complaints: {}",
+        report["complaints"]
+    );
+    let bytes = report["first_load_bytes"].as_u64().unwrap_or(u64::MAX);
+    ensure!(bytes <= MOST_BYTES, "expected a first load of at most {MOST_BYTES} bytes, found {bytes}");
+    let first = report["first_frame_ms"].as_f64().unwrap_or(f64::INFINITY);
+    ensure!(
+        first <= MOST_FIRST_FRAME_MS,
+        "expected a first picture within {MOST_FIRST_FRAME_MS} ms, found {first:.0}"
+    );
+    Ok(())
+}
+
+fn state_of(browser: &Browser) -> Result<Value> {
+    let state = browser.run("return window.policySpace ? window.policySpace() : {}")?;
+    ensure!(state["error"].is_null(), "the page says: {}", state["error"]);
+    Ok(state)
+}
+
+fn wait_for(browser: &Browser, there: impl Fn(&Value) -> bool) -> Result<Value> {
+    let start = Instant::now();
+    loop {
+        let state = state_of(browser)?;
+        if there(&state) {
+            return Ok(state);
+        }
+        ensure!(start.elapsed() < PATIENCE, "the page takes longer than {PATIENCE:?}: {state}");
+        thread::sleep(Duration::from_millis(200));
+    }
+}
+
+/// Plays on and reports the memory of the page, once a minute.
+fn soak(browser: &Browser, minutes: f64) -> Result<Value> {
+    let mut memory = Vec::new();
+    let start = Instant::now();
+    loop {
+        memory.push(state_of(browser)?["memory"].clone());
+        if start.elapsed().as_secs_f64() >= 60.0 * minutes {
+            return Ok(json!({"minutes": minutes, "heap_bytes": memory}));
+        }
+        thread::sleep(Duration::from_secs_f64(60.0_f64.min(60.0 * minutes)));
+    }
+}
+
+/// What an example of `lockstep` prints of the shipped pack.
+fn native(workspace: &Workspace, example: &str, more: &[&str]) -> Result<Value> {
+    let mut cargo = workspace.cargo();
+    cargo.args([
+        "run",
+        "--quiet",
+        "--release",
+        "-p",
+        "lockstep",
+        "--features",
+        "deterministic",
+        "--example",
+        example,
+    ]);
+    cargo.args(["--", "assets/humanoid.pack.safetensors"]).args(more);
+    serde_json::from_str(&output_of(&mut cargo)?).with_context(|| format!("{example}: expected JSON"))
+}
+
+fn native_replay(workspace: &Workspace, file: &Path) -> Result<Value> {
+    native(workspace, "play", &[file.to_str().context("a path of UTF-8")?])
+}
+
+/// Pictures a second that the native demo draws of one character.
+fn native_fps(workspace: &Workspace) -> Result<Value> {
+    let mut cargo = workspace.cargo();
+    cargo.args(["run", "--quiet", "--release", "-p", "viewer", "--", "bench-frame", "--json"]);
+    let told: Value = serde_json::from_str(&output_of(&mut cargo)?).context("bench-frame: expected JSON")?;
+    Ok(told)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_difference_or_a_complaint_fails() {
+        let sound = json!({
+            "native_hash": "a", "web_hash": "a", "keys_equal_natively": true, "complaints": [],
+            "first_load_bytes": 1000, "first_frame_ms": 900.0,
+        });
+        verdict(&sound).unwrap();
+        for (key, value, said) in [
+            ("web_hash", json!("b"), "expected the state"),
+            ("keys_equal_natively", json!(false), "keys"),
+            ("complaints", json!(["x"]), "complaints"),
+            ("first_load_bytes", json!(MOST_BYTES + 1), "first load"),
+            ("first_frame_ms", json!(3001.0), "first picture"),
+            ("native_hash", Value::Null, "expected the state"),
+        ] {
+            let mut broken = sound.clone();
+            broken[key] = value;
+            assert!(verdict(&broken).unwrap_err().to_string().contains(said), "{key}");
+        }
+    }
+}
