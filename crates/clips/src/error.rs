@@ -83,6 +83,19 @@ pub enum ClipError {
         /// Its seconds.
         found: f32,
     },
+    /// An excerpt that is not within the clip.
+    #[error(
+        "clip {clip}: expected an excerpt [from, to] with 0 <= from < to <= {duration} s, found [{}, {}]",
+        found[0], found[1]
+    )]
+    Excerpt {
+        /// Name of the clip.
+        clip: String,
+        /// Its seconds.
+        duration: f32,
+        /// First and last second that were asked for.
+        found: [f32; 2],
+    },
     /// A body that has hinges is not in the clip.
     #[error("clip {clip}: expected a body {expected}, found {found}")]
     Body {

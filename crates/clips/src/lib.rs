@@ -122,6 +122,27 @@ impl Clip {
         (self.root_positions[a].lerp(self.root_positions[b], t), rotations)
     }
 
+    /// The frames from one second to another, both within the clip. What looped still does: the last of these frames then has to
+    /// look like the first.
+    ///
+    /// # Errors
+    /// When the seconds are not an interval within the clip, or fewer than two frames lie in it.
+    pub fn excerpt(&self, [from, to]: [f32; 2]) -> Result<Self, ClipError> {
+        if !(from >= 0.0 && from < to && to <= self.duration() + 1e-3) {
+            let (clip, duration) = (self.name.clone(), self.duration());
+            return Err(ClipError::Excerpt { clip, duration, found: [from, to] });
+        }
+        let first = self.times.partition_point(|t| *t < from - 1e-4);
+        let after = self.times.partition_point(|t| *t <= to + 1e-4);
+        let excerpt = Self {
+            times: self.times[first..after].to_vec(),
+            root_positions: self.root_positions[first..after].to_vec(),
+            local_rotations: self.local_rotations[first..after].to_vec(),
+            ..self.clone()
+        };
+        excerpt.checked()
+    }
+
     /// How far one cycle moves the root, horizontally.
     #[must_use]
     pub fn cycle_offset(&self) -> Vec3 {

@@ -198,3 +198,17 @@ fn a_clip_goes_to_no_pose_of_other_bodies() {
     let error = swinging().towards(&other.checked().unwrap(), 0.5).unwrap_err().to_string();
     assert!(error.contains("right_shin") && error.ends_with("found root"), "{error}");
 }
+
+#[test]
+fn an_excerpt_has_the_frames_of_its_seconds_and_no_others() {
+    let walk = swinging();
+    let excerpt = walk.excerpt([0.25, 0.75]).unwrap();
+    assert!((excerpt.duration() - 0.5).abs() < 0.02 && excerpt.times[0] == 0.0, "{}", excerpt.duration());
+    let first = walk.times.iter().position(|t| *t > 0.2499).unwrap();
+    assert_eq!(excerpt.root_positions[0], walk.root_positions[first]);
+    assert_eq!(excerpt.looping, walk.looping);
+    for seconds in [[0.5, 0.5], [-0.1, 0.5], [0.5, 60.0], [f32::NAN, 0.5]] {
+        let error = walk.excerpt(seconds).unwrap_err().to_string();
+        assert!(error.contains("expected an excerpt [from, to]"), "{error}");
+    }
+}

@@ -12,7 +12,7 @@ use crate::env::{Demonstrations, GraphNode, TerminationHeights, TrainingGraph};
 use crate::nn::Network;
 use crate::pack::TrainedSkill;
 use crate::ppo::{Actor, Learner};
-use crate::recipe::Recipe;
+use crate::recipe::{ClipShare, Recipe};
 use crate::style::{Discriminators, NodeDiscriminator};
 use crate::training::{POLICY_HIDDEN, Parts};
 use crate::workspace::Workspace;
@@ -123,8 +123,8 @@ impl Workspace {
     /// Clips that a recipe names for starts.
     fn start_clips(&self, recipe: &Recipe) -> Result<Option<Demonstrations>> {
         let names = &recipe.first().environment.reset.clips;
-        let named = names.iter().map(|name| (name.as_str(), 1.0, true));
-        (!names.is_empty()).then(|| self.clips_ready(named)).transpose()
+        let named: Vec<_> = names.iter().map(|name| ClipShare::whole(name)).collect();
+        (!named.is_empty()).then(|| self.clips_ready(&named)).transpose()
     }
 }
 

@@ -9,7 +9,7 @@ use physics_bridge::Model;
 
 use crate::checkpoint::{Checkpoint, CheckpointError};
 use crate::env::{Demonstrations, Normalisers};
-use crate::recipe::Recipe;
+use crate::recipe::{ClipShare, Recipe};
 use crate::run::{CHECKPOINT, Existing, Loaded, METRICS, METRICS_FILE, Run, RunFolder, newest_checkpoint};
 use crate::training::Training;
 
@@ -129,15 +129,12 @@ impl Workspace {
     /// # Errors
     /// When a clip is missing or wrong.
     pub fn demonstrations(&self, recipe: &Recipe) -> Result<Demonstrations> {
-        self.clips_ready(recipe.clips.iter().map(|clip| (clip.name.as_str(), clip.share, clip.mirror)))
+        self.clips_ready(&recipe.clips)
     }
 
-    /// Clips by name, share and whether their mirror images count too, ready to learn from.
-    pub(crate) fn clips_ready<'a>(
-        &self,
-        named: impl Iterator<Item = (&'a str, f32, bool)>,
-    ) -> Result<Demonstrations> {
-        let clips = named.map(|(name, share, mirror)| Ok((self.clips.load(name)?, share, mirror)));
+    /// Clips, ready to learn from.
+    pub(crate) fn clips_ready(&self, named: &[ClipShare]) -> Result<Demonstrations> {
+        let clips = named.iter().map(|clip| Ok((clip.load(&self.clips)?, clip.share, clip.mirror)));
         let clips = clips.collect::<Result<Vec<_>, ClipError>>()?;
         Ok(Demonstrations::from_clips(&clips, &self.model, &self.normalisers.frame)?)
     }

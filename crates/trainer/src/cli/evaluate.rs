@@ -136,7 +136,7 @@ fn states_of_clips(
             continue;
         }
         if let Some(clip) = Recipe::load(&path)?.clips.first() {
-            states.insert(node.name.clone(), clip_states(model, &clips.load(&clip.name)?)?);
+            states.insert(node.name.clone(), clip_states(model, &clip.load(clips)?)?);
         }
     }
     Ok(states)

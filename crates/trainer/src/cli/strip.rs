@@ -45,8 +45,9 @@ pub(crate) fn run(
     let span = a.figures.max(1) * a.stride.max(1);
     for (index, node) in pack.graph().nodes().iter().enumerate().filter(|(_, n)| n.speed_mps.is_some()) {
         let recipe = Recipe::load(&recipes.join(format!("{}.toml", node.name)))?;
-        let name = &recipe.clips[0].name;
-        let clip = clip_states(described, &clips.load(name)?)?;
+        // A recipe of a node has a clip or more.
+        let of_recipe = &recipe.clips[0];
+        let (name, clip) = (&of_recipe.name, clip_states(described, &of_recipe.load(clips)?)?);
         let motion = watch(model, &pack, NodeId::new(index));
         if motion.len() < span {
             say(format_args!("{}: falls before it can be drawn", node.name))?;
@@ -84,7 +85,7 @@ fn episodic_skills(
         let raises = pack.recovery() == Some(SkillId::new(index));
         // One that raises the character has a clip for each side it may lie on.
         for (which, clip) in recipe.clips.iter().take(if raises { 2 } else { 1 }).enumerate() {
-            let states = clip_states(model.described(), &clips.load(&clip.name)?)?;
+            let states = clip_states(model.described(), &clip.load(clips)?)?;
             let states = if raises { &states[..] } else { &states[..states.len() / 2] };
             let motion = watch_skill(model, pack, SkillId::new(index), which == 0);
             let name = if raises { clip.name.clone() } else { skill.name.clone() };

@@ -2,6 +2,7 @@
 
 use std::path::Path;
 
+use clips::{Clip, ClipError, ClipFolder};
 use files::quoted;
 use files::read_text_bounded;
 use serde::de::DeserializeOwned;
@@ -28,6 +29,29 @@ pub struct ClipShare {
     /// False to take the clip as it is, without its mirror image.
     #[serde(default = "yes")]
     pub mirror: bool,
+    /// First and last second of the clip that count; the whole clip when there are none.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub seconds: Option<[f32; 2]>,
+}
+
+impl ClipShare {
+    /// The whole clip of this name and its mirror image.
+    #[must_use]
+    pub fn whole(name: &str) -> Self {
+        Self { name: name.to_owned(), share: 1.0, mirror: true, seconds: None }
+    }
+
+    /// The clip from its folder, cut to the seconds that count.
+    ///
+    /// # Errors
+    /// When the clip is missing or wrong, or shorter than those seconds.
+    pub fn load(&self, folder: &ClipFolder) -> Result<Clip, ClipError> {
+        let clip = folder.load(&self.name)?;
+        match self.seconds {
+            Some(seconds) => clip.excerpt(seconds),
+            None => Ok(clip),
+        }
+    }
 }
 
 fn yes() -> bool {

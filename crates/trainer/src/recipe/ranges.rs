@@ -10,6 +10,7 @@ use super::{Recipe, RecipeError};
 /// Field, least and largest value. A star stands for any name, as in tables of bodies.
 const RANGES: &[(&str, f64, f64)] = &[
     ("clips.share", 1e-6, 1e6),
+    ("clips.seconds", 0.0, 600.0),
     ("phases.samples", 1.0, 1e12),
     ("environment.num_envs", 1.0, 65_536.0),
     ("environment.horizon", 1.0, 1024.0),
