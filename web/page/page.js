@@ -50,9 +50,8 @@ async function bytesOf(name) {
 
 async function start() {
   if (typeof WebAssembly !== 'object') return problem('This browser runs no WebAssembly, or it is turned off. The demo needs it.');
-  if (!navigator.gpu) {
-    return problem('This browser has no WebGPU, or it is turned off. Current Chrome, Edge, Firefox and Safari have it; a page '
-      + 'that is not served by https or from this machine gets none.');
+  if (!navigator.gpu && !document.createElement('canvas').getContext('webgl2')) {
+    return problem('This browser has neither WebGPU nor WebGL2, or they are turned off. The demo draws with one of them.');
   }
   const [code, wasm, pack, mesh] = await Promise.all([
     import(files.code.path), bytesOf('wasm'), bytesOf('pack'), bytesOf('mesh'),
@@ -111,6 +110,7 @@ function frame(now) {
     told.fps = frames * 1000 / (now - frameStart);
     [frames, frameStart] = [0, now];
     at('doing').textContent = demo.doing();
+    if (told.fps < 24 && drawScale > 0.5) { drawScale -= 0.25; fit(); }
     at('rate').textContent = `${told.fps.toFixed(0)} fps, physics ${told.physicsMs.toFixed(1)} ms a tick`;
   }
   requestAnimationFrame(frame);
@@ -119,8 +119,10 @@ document.addEventListener('visibilitychange', () => {
   if (!document.hidden && demo && !told.error) { last = null; requestAnimationFrame(frame); }
 });
 
+// Pixels are what a slow machine has too many of: it draws fewer, down to half as many along each side.
+let drawScale = 1;
 function fit() {
-  const ratio = Math.min(devicePixelRatio || 1, 2);
+  const ratio = Math.min(devicePixelRatio || 1, 2) * drawScale;
   canvas.width = Math.max(1, Math.round(innerWidth * ratio));
   canvas.height = Math.max(1, Math.round(innerHeight * ratio));
   demo?.resize(canvas.width, canvas.height);
@@ -254,6 +256,14 @@ addEventListener('drop', async (event) => {
 window.policySpace = () => (demo && !told.error
   ? { ...told, ticks: demo.ticks(), hash: demo.hash(), mode: demo.mode(), doing: demo.doing(), memory: performance.memory?.usedJSHeapSize ?? null }
   : { ...told, ticks: 0 });
+window.policySpacePicture = () => {
+  const copy = Object.assign(document.createElement('canvas'), { width: canvas.width, height: canvas.height });
+  const pixels = copy.getContext('2d');
+  demo.draw();
+  pixels.drawImage(canvas, 0, 0);
+  const colours = new Set(new Uint32Array(pixels.getImageData(0, 0, copy.width, copy.height).data.buffer)).size;
+  return { colours, png: copy.toDataURL('image/png').split(',')[1] };
+};
 window.policySpaceLink = () => demo.link();
 
 addEventListener('error', (event) => problem(`The page stopped: ${event.message}`));

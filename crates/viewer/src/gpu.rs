@@ -79,7 +79,8 @@ impl Gpu {
     pub async fn for_target(
         target: impl Into<wgpu::SurfaceTarget<'static>>,
     ) -> Result<(Self, wgpu::Surface<'static>, wgpu::Adapter), GpuError> {
-        let instance = wgpu::Instance::new(descriptor());
+        // In a browser without WebGPU the canvas has to be opened by WebGL2 from the start.
+        let instance = wgpu::util::new_instance_with_webgpu_detection(descriptor()).await;
         let surface = instance.create_surface(target).map_err(GpuError::NoSurface)?;
         let (gpu, adapter) = Self::open(&instance, Some(&surface)).await?;
         Ok((gpu, surface, adapter))
@@ -102,7 +103,8 @@ impl Gpu {
         let info = adapter.get_info();
         let descriptor = wgpu::DeviceDescriptor {
             label: Some("policy space"),
-            required_limits: wgpu::Limits::downlevel_defaults().using_resolution(adapter.limits()),
+            // Nothing here computes or stores, so that WebGL2 will do.
+            required_limits: wgpu::Limits::downlevel_webgl2_defaults().using_resolution(adapter.limits()),
             memory_hints: wgpu::MemoryHints::MemoryUsage,
             ..Default::default()
         };
@@ -110,9 +112,12 @@ impl Gpu {
             .request_device(&descriptor)
             .await
             .map_err(|source| GpuError::NoDevice { adapter: info.name.clone(), source })?;
-        let is_software = info.device_type == wgpu::DeviceType::Cpu;
+        // A browser does not say what kind of adapter it has, at most its name.
+        let is_software = info.device_type == wgpu::DeviceType::Cpu || info.name.contains("SwiftShader");
         let lost = watch(&device);
-        Ok((Self { device, queue, adapter_name: info.name, is_software, lost }, adapter))
+        // Browsers name no adapter.
+        let adapter_name = if info.name.is_empty() { format!("{:?}", info.backend) } else { info.name };
+        Ok((Self { device, queue, adapter_name, is_software, lost }, adapter))
     }
 
     /// Why the device went away, once it has: by a reset of the driver, a card that was unplugged, or for want of

@@ -12,8 +12,8 @@ use serde_json::{Value, json};
 use super::http::request;
 use crate::workspace::answers;
 
-/// What makes Chromium draw with the processor, and leave the network alone.
-const FLAGS: [&str; 12] = [
+/// What makes Chromium leave the network alone.
+const FLAGS: [&str; 9] = [
     "--headless",
     "--no-sandbox",
     "--disable-quic",
@@ -21,12 +21,37 @@ const FLAGS: [&str; 12] = [
     "--disable-background-networking",
     "--disable-component-update",
     "--disable-sync",
-    "--enable-unsafe-webgpu",
-    "--use-webgpu-adapter=swiftshader",
-    "--enable-unsafe-swiftshader",
     "--enable-precise-memory-info",
     "--window-size=1280,720",
 ];
+
+/// What a page can draw with. The processor does it in both cases.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Graphics {
+    /// WebGPU.
+    WebGpu,
+    /// WebGL2 alone, as in browsers without WebGPU.
+    WebGl2,
+}
+
+impl Graphics {
+    const fn flags(self) -> &'static [&'static str] {
+        match self {
+            // Without Vulkan in all of Chromium the canvas stays empty.
+            Graphics::WebGpu => &[
+                "--enable-unsafe-webgpu",
+                "--use-webgpu-adapter=swiftshader",
+                "--enable-unsafe-swiftshader",
+                "--enable-features=Vulkan",
+                "--use-vulkan=swiftshader",
+                "--use-angle=vulkan",
+            ],
+            Graphics::WebGl2 => {
+                &["--disable-features=WebGPU", "--use-angle=swiftshader", "--enable-unsafe-swiftshader"]
+            }
+        }
+    }
+}
 
 /// A browser with one page; ends when it is dropped.
 pub struct Browser {
@@ -41,7 +66,7 @@ impl Browser {
     ///
     /// # Errors
     /// When chromedriver or Chromium is missing or does not start.
-    pub fn start() -> Result<Self> {
+    pub fn start(graphics: Graphics) -> Result<Self> {
         for (program, package) in [("chromedriver", "chromium-driver"), ("chromium", "chromium")] {
             ensure!(
                 answers(Command::new(program).arg("--version")),
@@ -58,7 +83,8 @@ impl Browser {
             .stderr(Stdio::null())
             .spawn()
             .context("start chromedriver")?;
-        let profile = std::env::temp_dir().join(format!("policy-space-browser-{}", std::process::id()));
+        let profile =
+            std::env::temp_dir().join(format!("policy-space-browser-{}-{}", std::process::id(), port.port()));
         let mut browser = Self { driver, address: port, session: String::new(), profile };
         let start = Instant::now();
         while request(port, "GET", "/status", None).is_err() {
@@ -67,6 +93,7 @@ impl Browser {
         }
         let arguments: Vec<String> = FLAGS
             .iter()
+            .chain(graphics.flags())
             .map(ToString::to_string)
             .chain([format!("--user-data-dir={}", browser.profile.display())])
             .collect();
@@ -110,15 +137,24 @@ impl Browser {
             .map(|_| ())
     }
 
-    /// A picture of the page, as PNG.
+    /// A picture of the page as it is composed, as PNG.
     ///
     /// # Errors
     /// When the browser gives none, or the file can't be written.
     pub fn picture(&self, path: &Path) -> Result<()> {
         let text =
             value(request(self.address, "GET", &format!("/session/{}/screenshot", self.session), None)?)?;
-        let png = from_base64(text.as_str().context("expected a picture, found none")?)?;
-        std::fs::write(path, png).with_context(|| format!("write {}", path.display()))
+        write_picture(path, text.as_str())
+    }
+
+    /// The picture on the page's canvas, as PNG. Returns the number of its colours: of one colour nothing is to be seen.
+    ///
+    /// # Errors
+    /// When the page gives none, or the file can't be written.
+    pub fn canvas(&self, path: &Path) -> Result<u64> {
+        let picture = self.run("return window.policySpacePicture()")?;
+        write_picture(path, picture["png"].as_str())?;
+        picture["colours"].as_u64().context("expected a number of colours, found none")
     }
 
     /// What the page has complained of since the last call.
@@ -149,6 +185,11 @@ fn value(mut answer: Value) -> Result<Value> {
         bail!("the browser says {error}: {}", answer["value"]["message"].as_str().unwrap_or_default());
     }
     Ok(answer["value"].take())
+}
+
+fn write_picture(path: &Path, base64: Option<&str>) -> Result<()> {
+    let png = from_base64(base64.context("expected a picture, found none")?)?;
+    std::fs::write(path, png).with_context(|| format!("write {}", path.display()))
 }
 
 fn from_base64(text: &str) -> Result<Vec<u8>> {

@@ -8,7 +8,7 @@ use anyhow::{Context, Result, ensure};
 use serde_json::{Value, json};
 
 use super::WebArgs;
-use super::browser::Browser;
+use super::browser::{Browser, Graphics};
 use super::server::Server;
 use crate::workspace::{Workspace, output_of};
 
@@ -17,6 +17,8 @@ const MOST_BYTES: u64 = 6 << 20;
 const MOST_FIRST_FRAME_MS: f64 = 3000.0;
 /// Ticks of the script.
 const SCRIPT_TICKS: u64 = 600;
+/// Fewer colours on the canvas are no picture of the world.
+const LEAST_COLOURS: u64 = 200;
 /// The page may be slower than the clock by this much.
 const PATIENCE: Duration = Duration::from_secs(180);
 /// Shift in the WebDriver protocol.
@@ -29,7 +31,7 @@ const SHIFT: &str = "\u{e008}";
 pub fn run(workspace: &Workspace, folder: PathBuf, arguments: &WebArgs) -> Result<()> {
     let out = workspace.root().join("out");
     let server = Server::start(folder, 0)?;
-    let browser = Browser::start()?;
+    let browser = Browser::start(Graphics::WebGpu)?;
     let page = format!("http://{}/", server.address());
 
     // The fixed input, which has everything in it.
@@ -38,7 +40,7 @@ pub fn run(workspace: &Workspace, folder: PathBuf, arguments: &WebArgs) -> Resul
     let first_load_bytes = server.sent();
     let done = wait_for(&browser, |state| state["mode"] == "over")?;
     ensure!(done["ticks"] == json!(SCRIPT_TICKS), "expected {SCRIPT_TICKS} ticks, found {}", done["ticks"]);
-    browser.picture(&out.join("web-script.png"))?;
+    let script_colours = browser.canvas(&out.join("web-script.png"))?;
     let native = native(workspace, "determinism", &["--players", "1"])?;
 
     // Keys, as a player presses them.
@@ -59,7 +61,8 @@ pub fn run(workspace: &Workspace, folder: PathBuf, arguments: &WebArgs) -> Resul
     }
     browser.keys(false, &["d", "c"])?;
     wait_for(&browser, |state| state["ticks"].as_u64() >= Some(SCRIPT_TICKS))?;
-    browser.picture(&out.join("web-keys.png"))?;
+    browser.picture(&out.join("web-page.png"))?;
+    let key_colours = browser.canvas(&out.join("web-keys.png"))?;
     let link = browser.run("return window.policySpaceLink()")?;
     let link = link.as_str().context("expected a link, found none")?;
     let file = out.join("web-keys.link");
@@ -69,8 +72,9 @@ pub fn run(workspace: &Workspace, folder: PathBuf, arguments: &WebArgs) -> Resul
 
     let soak =
         if arguments.soak_minutes > 0.0 { soak(&browser, arguments.soak_minutes)? } else { Value::Null };
-    let complaints = browser.complaints()?;
+    let mut complaints = browser.complaints()?;
     drop(browser);
+    let webgl2 = without_webgpu(&page, &out.join("web-webgl2.png"), &mut complaints)?;
     let report = json!({
         "native_hash": native["hash"],
         "web_hash": done["hash"],
@@ -83,6 +87,8 @@ pub fn run(workspace: &Workspace, folder: PathBuf, arguments: &WebArgs) -> Resul
         "native_physics_ms_per_tick": native["seconds"].as_f64().map(|secs| secs * 1e3 / SCRIPT_TICKS as f64),
         "native_fps": if arguments.skip_native_fps { Value::Null } else { native_fps(workspace)? },
         "adapter": state["adapter"],
+        "colours": script_colours.min(key_colours),
+        "webgl2": webgl2,
         "soak": soak,
         "complaints": complaints,
     });
@@ -94,12 +100,39 @@ pub fn run(workspace: &Workspace, folder: PathBuf, arguments: &WebArgs) -> Resul
     verdict(&report)
 }
 
+/// The fixed input again, in a browser that has WebGL2 alone.
+fn without_webgpu(page: &str, picture: &Path, complaints: &mut Vec<String>) -> Result<Value> {
+    let browser = Browser::start(Graphics::WebGl2)?;
+    browser.open(&format!("{page}?input=script"))?;
+    let done = wait_for(&browser, |state| state["mode"] == "over")?;
+    let colours = browser.canvas(picture)?;
+    complaints.extend(browser.complaints()?);
+    Ok(json!({
+        "hash": done["hash"],
+        "first_frame_ms": done["firstFrameMs"],
+        "fps": done["fps"],
+        "adapter": done["adapter"],
+        "colours": colours,
+    }))
+}
+
 fn verdict(report: &Value) -> Result<()> {
     let (native, web) = (&report["native_hash"], &report["web_hash"]);
     ensure!(
         native.is_string() && native == web,
         "expected the state {native} of the native run, found {web}"
     );
+    ensure!(
+        report["webgl2"]["hash"] == *web,
+        "expected the state {web} with WebGL2, found {}",
+        report["webgl2"]["hash"]
+    );
+    for colours in [&report["colours"], &report["webgl2"]["colours"]] {
+        ensure!(
+            colours.as_u64() >= Some(LEAST_COLOURS),
+            "expected a picture of at least {LEAST_COLOURS} colours, found {colours}"
+        );
+    }
     ensure!(report["keys_equal_natively"] == true, "the keys of the page give another state natively");
     ensure!(
         report["complaints"].as_array().is_some_and(Vec::is_empty),
@@ -185,7 +218,8 @@ mod tests {
     fn a_difference_or_a_complaint_fails() {
         let sound = json!({
             "native_hash": "a", "web_hash": "a", "keys_equal_natively": true, "complaints": [],
-            "first_load_bytes": 1000, "first_frame_ms": 900.0,
+            "first_load_bytes": 1000, "first_frame_ms": 900.0, "colours": 5000,
+            "webgl2": {"hash": "a", "colours": 5000},
         });
         verdict(&sound).unwrap();
         for (key, value, said) in [
@@ -195,6 +229,9 @@ mod tests {
             ("first_load_bytes", json!(MOST_BYTES + 1), "first load"),
             ("first_frame_ms", json!(3001.0), "first picture"),
             ("native_hash", Value::Null, "expected the state"),
+            ("colours", json!(1), "colours"),
+            ("webgl2", json!({"hash": "b", "colours": 5000}), "WebGL2"),
+            ("webgl2", json!({"hash": "a", "colours": 1}), "colours"),
         ] {
             let mut broken = sound.clone();
             broken[key] = value;

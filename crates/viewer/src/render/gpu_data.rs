@@ -24,14 +24,13 @@ pub(super) struct FrameData {
     fade: [f32; 4],
 }
 
-/// `Instance` of `skinned.wgsl`.
+/// What `skinned.wgsl` reads of a whole character.
 #[derive(Clone, Copy, Debug, Pod, Zeroable)]
 #[repr(C)]
 pub(super) struct InstanceData {
     pub(super) tint: [f32; 4],
     pub(super) ground: f32,
     pub(super) first: u32,
-    pub(super) padding: [u32; 2],
 }
 
 /// A patch of `contact.wgsl`.

@@ -18,7 +18,7 @@ mod upload;
 
 use crate::gpu::Gpu;
 pub use appearance::Appearance;
-use buffers::{Growing, fixed};
+use buffers::{Growing, GrowingTexture, fixed};
 pub use config::{Light, RenderConfig};
 use gpu_data::FrameData;
 use model::MeshBuffers;
@@ -48,7 +48,7 @@ pub struct Renderer {
     frame: wgpu::Buffer,
     frame_group: wgpu::BindGroup,
     instances: Growing,
-    palette: Growing,
+    palette: GrowingTexture,
     figures_group: wgpu::BindGroup,
     contacts: Growing,
     markers: Growing,
@@ -75,10 +75,10 @@ impl Renderer {
             Usage::UNIFORM | Usage::COPY_DST,
             &[<FrameData as bytemuck::Zeroable>::zeroed()],
         );
-        let frame_group = bind_buffers(device, &layouts.frame, &[&frame]);
-        let instances = Growing::new(device, "instances", Usage::STORAGE);
-        let palette = Growing::new(device, "palette", Usage::STORAGE);
-        let figures_group = bind_buffers(device, &layouts.figures, &[instances.buffer(), palette.buffer()]);
+        let frame_group = bind_buffer(device, &layouts.frame, &frame);
+        let instances = Growing::new(device, "instances", Usage::VERTEX);
+        let palette = GrowingTexture::new(device, "palette");
+        let figures_group = bind_texture(device, &layouts.figures, palette.view());
         Self {
             ground: ground_buffer(device, None),
             solids: (fixed(device, "solids", Usage::VERTEX, &solid_vertices), ranges),
@@ -167,7 +167,7 @@ impl Renderer {
         });
         pass.set_bind_group(0, &self.frame_group, &[]);
         pass.set_pipeline(&self.pipelines.thing_shadow);
-        self.draw_things(&mut pass, counts);
+        self.draw_solids(&mut pass, &self.things, &counts.things);
         // A shadow's edge is softer than the coarse mesh is coarse.
         let Some(level) = self.mesh_buffers.as_ref().and_then(|buffers| buffers.levels.last()) else {
             return;
@@ -178,6 +178,7 @@ impl Renderer {
         pass.set_pipeline(&self.pipelines.skinned_shadow);
         pass.set_bind_group(2, &self.figures_group, &[]);
         pass.set_vertex_buffer(0, level.vertices.slice(..));
+        pass.set_vertex_buffer(1, self.instances.buffer().slice(..));
         pass.set_index_buffer(level.indices.slice(..), wgpu::IndexFormat::Uint32);
         let end = level.parts.iter().map(|p| p.1.end).max().unwrap_or(0);
         pass.draw_indexed(0..end, 0, 0..counts.figures);
@@ -204,31 +205,36 @@ impl Renderer {
         pass.set_bind_group(1, &self.shadow_group, &[]);
         self.draw_figures(&mut pass, counts);
         pass.set_pipeline(&self.pipelines.thing);
-        self.draw_things(&mut pass, counts);
+        self.draw_solids(&mut pass, &self.things, &counts.things);
         pass.set_pipeline(&self.pipelines.ground);
         pass.set_vertex_buffer(0, self.ground.0.slice(..));
         pass.draw(0..self.ground.1, 0..1);
-        pass.set_pipeline(&self.pipelines.contact);
-        pass.set_vertex_buffer(0, self.contacts.buffer().slice(..));
-        pass.draw(0..4, 0..counts.contacts);
+        if counts.contacts > 0 {
+            pass.set_pipeline(&self.pipelines.contact);
+            pass.set_vertex_buffer(0, self.contacts.buffer().slice(..));
+            pass.draw(0..4, 0..counts.contacts);
+        }
         pass.set_pipeline(&self.pipelines.sky);
         pass.draw(0..3, 0..1);
-        pass.set_pipeline(&self.pipelines.ribbon);
-        pass.set_vertex_buffer(0, self.ribbons.buffer().slice(..));
-        pass.draw(0..counts.ribbons, 0..1);
-        pass.set_pipeline(&self.pipelines.shape);
-        pass.set_vertex_buffer(0, self.solids.0.slice(..));
-        pass.set_vertex_buffer(1, self.markers.buffer().slice(..));
-        for (vertices, instances) in self.solids.1.iter().zip(&counts.markers) {
-            pass.draw(vertices.clone(), instances.clone());
+        if counts.ribbons > 0 {
+            pass.set_pipeline(&self.pipelines.ribbon);
+            pass.set_vertex_buffer(0, self.ribbons.buffer().slice(..));
+            pass.draw(0..counts.ribbons, 0..1);
         }
+        pass.set_pipeline(&self.pipelines.shape);
+        self.draw_solids(&mut pass, &self.markers, &counts.markers);
     }
 
-    /// One draw call for each solid.
-    fn draw_things(&self, pass: &mut wgpu::RenderPass<'_>, counts: &Counts) {
+    /// One draw call for each kind of solid that there is.
+    fn draw_solids(
+        &self,
+        pass: &mut wgpu::RenderPass<'_>,
+        placed: &Growing,
+        counts: &[std::ops::Range<u32>; scene::SOLIDS],
+    ) {
         pass.set_vertex_buffer(0, self.solids.0.slice(..));
-        pass.set_vertex_buffer(1, self.things.buffer().slice(..));
-        for (vertices, instances) in self.solids.1.iter().zip(&counts.things) {
+        pass.set_vertex_buffer(1, placed.buffer().slice(..));
+        for (vertices, instances) in self.solids.1.iter().zip(counts).filter(|(_, some)| !some.is_empty()) {
             pass.draw(vertices.clone(), instances.clone());
         }
     }
@@ -243,6 +249,7 @@ impl Renderer {
         pass.set_pipeline(&self.pipelines.skinned);
         pass.set_bind_group(2, &self.figures_group, &[]);
         pass.set_vertex_buffer(0, level.vertices.slice(..));
+        pass.set_vertex_buffer(1, self.instances.buffer().slice(..));
         pass.set_index_buffer(level.indices.slice(..), wgpu::IndexFormat::Uint32);
         for (material, indices) in &level.parts {
             pass.set_bind_group(3, &buffers.materials[*material], &[]);
@@ -264,17 +271,29 @@ fn ground_buffer(device: &wgpu::Device, grid: Option<&GroundGrid>) -> (wgpu::Buf
     (fixed(device, "ground", wgpu::BufferUsages::VERTEX, &vertices), vertices.len() as u32)
 }
 
-fn bind_buffers(
+fn bind_buffer(
     device: &wgpu::Device,
     layout: &wgpu::BindGroupLayout,
-    buffers: &[&wgpu::Buffer],
+    buffer: &wgpu::Buffer,
 ) -> wgpu::BindGroup {
-    let entries: Vec<wgpu::BindGroupEntry<'_>> = buffers
-        .iter()
-        .zip(0..)
-        .map(|(buffer, binding)| wgpu::BindGroupEntry { binding, resource: buffer.as_entire_binding() })
-        .collect();
-    device.create_bind_group(&wgpu::BindGroupDescriptor { label: None, layout, entries: &entries })
+    bind(device, layout, buffer.as_entire_binding())
+}
+
+fn bind_texture(
+    device: &wgpu::Device,
+    layout: &wgpu::BindGroupLayout,
+    view: &wgpu::TextureView,
+) -> wgpu::BindGroup {
+    bind(device, layout, wgpu::BindingResource::TextureView(view))
+}
+
+fn bind(
+    device: &wgpu::Device,
+    layout: &wgpu::BindGroupLayout,
+    resource: wgpu::BindingResource<'_>,
+) -> wgpu::BindGroup {
+    let entries = &[wgpu::BindGroupEntry { binding: 0, resource }];
+    device.create_bind_group(&wgpu::BindGroupDescriptor { label: None, layout, entries })
 }
 
 fn shadow_group(device: &wgpu::Device, layouts: &Layouts, map: &wgpu::TextureView) -> wgpu::BindGroup {

@@ -1,7 +1,7 @@
 //! The immutable half of the renderer: bind group layouts and pipelines.
 
 use super::config::RenderConfig;
-use super::gpu_data::{ContactData, MarkerData};
+use super::gpu_data::{ContactData, InstanceData, MarkerData};
 use super::scene::RibbonVertex;
 use super::solids::SolidVertex;
 use crate::mesh::MeshVertex;
@@ -72,18 +72,19 @@ impl Layouts {
             })
         };
         let buffer = |ty| BindingType::Buffer { ty, has_dynamic_offset: false, min_binding_size: None };
-        let storage = buffer(BufferBindingType::Storage { read_only: true });
         let uniform = buffer(BufferBindingType::Uniform);
-        let map = BindingType::Texture {
-            sample_type: wgpu::TextureSampleType::Depth,
+        let texture = |sample_type| BindingType::Texture {
+            sample_type,
             view_dimension: wgpu::TextureViewDimension::D2,
             multisampled: false,
         };
+        let map = texture(wgpu::TextureSampleType::Depth);
+        let rows = texture(wgpu::TextureSampleType::Float { filterable: false });
         let comparison = BindingType::Sampler(SamplerBindingType::Comparison);
         Self {
             frame: layout("frame", ShaderStages::VERTEX_FRAGMENT, &[uniform]),
             shadow: layout("shadow", ShaderStages::FRAGMENT, &[map, comparison]),
-            figures: layout("figures", ShaderStages::VERTEX_FRAGMENT, &[storage, storage]),
+            figures: layout("figures", ShaderStages::VERTEX, &[rows]),
             material: layout("material", ShaderStages::FRAGMENT, &[uniform]),
         }
     }
@@ -167,10 +168,12 @@ impl Pipelines {
             bias: 0,
         };
         let sky = maker.make(&plain);
+        let figures =
+            [Some(mesh_layout()), Some(layout_of::<InstanceData>(wgpu::VertexStepMode::Instance, &INSTANCE))];
         let skinned = maker.make(&Recipe {
             name: "skinned",
             groups: &[frame, Some(&layouts.shadow), Some(&layouts.figures), Some(&layouts.material)],
-            buffers: &[Some(mesh_layout())],
+            buffers: &figures,
             cull: Some(wgpu::Face::Back),
             depth: (true, Less),
             ..plain
@@ -214,7 +217,7 @@ impl Pipelines {
         });
         let groups = [frame, None, Some(&layouts.figures)];
         let back = Some(wgpu::Face::Back);
-        let skinned_shadow = shadow_pipeline(device, "skinned", &groups, &[Some(mesh_layout())], back);
+        let skinned_shadow = shadow_pipeline(device, "skinned", &groups, &figures, back);
         let thing_shadow = shadow_pipeline(device, "thing", &groups[..1], &instanced, None);
         Self { skinned, skinned_shadow, ground, contact, sky, shape, thing, thing_shadow, ribbon }
     }
@@ -277,6 +280,8 @@ fn depth_state(
 
 const MESH: [wgpu::VertexAttribute; 5] =
     wgpu::vertex_attr_array![0 => Float32x3, 1 => Float32x3, 2 => Unorm8x4, 3 => Uint8x4, 4 => Unorm8x4];
+const INSTANCE: [wgpu::VertexAttribute; 3] =
+    wgpu::vertex_attr_array![5 => Float32x4, 6 => Float32, 7 => Uint32];
 const SOLID: [wgpu::VertexAttribute; 2] = wgpu::vertex_attr_array![0 => Float32x3, 1 => Float32x3];
 const CONTACT: [wgpu::VertexAttribute; 3] =
     wgpu::vertex_attr_array![0 => Float32x4, 1 => Float32x4, 2 => Float32x4];

@@ -2,7 +2,7 @@
 
 use super::gpu_data::{ContactData, FrameData, InstanceData, MarkerData, contacts};
 use super::scene::SOLIDS;
-use super::{Marker, Renderer, Scene, Solid, bind_buffers};
+use super::{Marker, Renderer, Scene, Solid, bind_texture};
 
 /// Numbers of what one picture draws, filled in by the upload.
 pub(super) struct Counts {
@@ -29,17 +29,15 @@ impl Renderer {
         let mut patches: Vec<ContactData> = Vec::new();
         for figure in figures {
             let first = palette.len() as u32;
-            instances.push(InstanceData { tint: figure.tint, ground: figure.ground, first, padding: [0; 2] });
+            instances.push(InstanceData { tint: figure.tint, ground: figure.ground, first });
             if let Some(mesh) = mesh {
                 mesh.palette_into(&figure.positions, &figure.rotations, &mut palette);
             }
             contacts(&self.appearance.patches, figure, &mut patches);
         }
-        let grown =
-            self.palette.write(device, queue, &palette) | self.instances.write(device, queue, &instances);
-        if grown {
-            let buffers = [self.instances.buffer(), self.palette.buffer()];
-            self.figures_group = bind_buffers(device, &self.layouts.figures, &buffers);
+        self.instances.write(device, queue, &instances);
+        if self.palette.write(device, queue, palette.as_flattened()) {
+            self.figures_group = bind_texture(device, &self.layouts.figures, self.palette.view());
         }
         self.contacts.write(device, queue, &patches);
         self.ribbons.write(device, queue, &scene.ribbons);
