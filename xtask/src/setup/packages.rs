@@ -47,6 +47,10 @@ const TESTS: [Package; 4] = [
     package("pkg-config", "the check of the C interface"),
 ];
 
+/// What the check of the page uses beyond the base.
+const BROWSER: [Package; 2] =
+    [package("chromium", "the check of the page"), package("chromium-driver", "the check of the page")];
+
 /// What a verb is about to do, which decides what it needs.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Purpose {
@@ -54,6 +58,8 @@ pub enum Purpose {
     Demo,
     /// Build, run and test in a real window.
     Tests,
+    /// Build, run and play the page in a browser.
+    Browser,
 }
 
 /// Says what is missing, and installs it when `install` is set, this is Debian or Ubuntu, and the user is root.
@@ -67,6 +73,7 @@ pub fn prepare(purpose: Purpose, install: bool) {
     let needed: Vec<Package> = match purpose {
         Purpose::Demo => BASE.to_vec(),
         Purpose::Tests => BASE.iter().chain(&TESTS).copied().collect(),
+        Purpose::Browser => BASE.iter().chain(&BROWSER).copied().collect(),
     };
     let Some(listing) = dpkg_listing(&needed) else {
         if !has_vulkan_loader() {
@@ -123,7 +130,8 @@ fn works_without(package: &Package) -> bool {
     match package.name {
         "gcc" => answers(Command::new("cc").arg("--version")),
         "python3-pip" => python_with_pip().is_some(),
-        "clang" | "pkg-config" => answers(Command::new(package.name).arg("--version")),
+        "chromium-driver" => answers(Command::new("chromedriver").arg("--version")),
+        "chromium" | "clang" | "pkg-config" => answers(Command::new(package.name).arg("--version")),
         _ => false,
     }
 }

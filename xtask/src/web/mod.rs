@@ -11,6 +11,7 @@ use std::path::PathBuf;
 use anyhow::Result;
 use clap::Args;
 
+use crate::setup::{self, Purpose};
 use crate::workspace::Workspace;
 
 /// Arguments of `cargo xtask web`.
@@ -27,7 +28,7 @@ pub struct WebArgs {
     port: u16,
     /// Instead of serving, play in headless Chromium and compare states with native runs.
     ///
-    /// Needs `chromium` and `chromedriver`, Debian's packages chromium and chromium-driver.
+    /// Uses Debian's packages chromium and chromium-driver, and installs them where it may.
     #[arg(long)]
     check: bool,
     /// With --check print one JSON object.
@@ -48,6 +49,7 @@ pub struct WebArgs {
 pub fn run(workspace: &Workspace, arguments: &WebArgs) -> Result<()> {
     let folder = build::page(workspace, arguments.release)?;
     if arguments.check {
+        setup::prepare(workspace, Purpose::Browser, true)?;
         return check::run(workspace, folder, arguments);
     }
     if !arguments.no_serve {
