@@ -235,6 +235,9 @@ pub struct SkillEntry {
     /// Speed below which it does not start, metres per second.
     #[serde(default)]
     pub minimum_speed_mps: f32,
+    /// Speed above which it does not start, metres per second; `None` for no such condition.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub maximum_speed_mps: Option<f32>,
     /// Name of the policy that runs afterwards.
     pub returns_to: String,
     /// Name of the discriminator that ends it; none: the time limit alone does.

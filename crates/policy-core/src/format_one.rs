@@ -139,6 +139,7 @@ impl SkillOne {
             policy: self.policy,
             entry: self.entry,
             minimum_speed_mps: 0.0,
+            maximum_speed_mps: None,
             returns_to: self.returns_to,
             discriminator: self.discriminator,
             end,

@@ -184,6 +184,7 @@ pub(crate) fn skill(entry: &SkillEntry, names: &[&str], m: &Manifest) -> Result<
         policy: PolicyId::from(find_node(field(), &entry.policy, names)?),
         entry: entry.entry.iter().map(|n| find_node(field(), n, names)).collect::<Result<_, _>>()?,
         minimum_speed_mps: minimum_speed(entry, field())?,
+        maximum_speed_mps: maximum_speed(entry, field())?,
         returns_to: find_node(field(), &entry.returns_to, names)?,
         discriminator: match &entry.discriminator {
             None => None,
@@ -199,6 +200,16 @@ fn minimum_speed(entry: &SkillEntry, owner: String) -> Result<f32, PackError> {
     let found = entry.minimum_speed_mps;
     let (field, expected) = ("minimum_speed_mps", "0 to 20");
     if (0.0..=20.0).contains(&found) {
+        Ok(found)
+    } else {
+        Err(PackError::Number { field, owner, expected, found })
+    }
+}
+
+fn maximum_speed(entry: &SkillEntry, owner: String) -> Result<f32, PackError> {
+    let Some(found) = entry.maximum_speed_mps else { return Ok(f32::INFINITY) };
+    let (field, expected) = ("maximum_speed_mps", "above minimum_speed_mps, up to 20");
+    if found > entry.minimum_speed_mps && found <= 20.0 {
         Ok(found)
     } else {
         Err(PackError::Number { field, owner, expected, found })

@@ -35,6 +35,9 @@ pub struct Skill {
     pub entry: Vec<NodeId>,
     /// Horizontal speed of the root below which it does not start, metres per second: a pending skill takes a run-up.
     pub minimum_speed_mps: f32,
+    /// Horizontal speed of the root above which it does not start, metres per second: a pending skill waits until the character is
+    /// slow enough. Infinite for no such condition.
+    pub maximum_speed_mps: f32,
     /// Node that runs afterwards.
     pub returns_to: NodeId,
     /// The discriminator that ends it; without one the time limit does.

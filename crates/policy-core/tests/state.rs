@@ -315,6 +315,32 @@ fn manifests_differ_only_in_their_checksum_after_a_round_trip() {
 }
 
 #[test]
+fn a_skill_that_needs_a_slow_character_waits_for_it() {
+    let mut manifest = common::manifest();
+    manifest.skills[0].maximum_speed_mps = Some(0.5);
+    let pack = Arc::new(CharacterPack::from_parts(manifest.clone(), common::tensors(-4.0)).unwrap());
+    let read = CharacterPack::from_bytes(&pack.to_bytes()).unwrap();
+    assert_eq!(read.skills()[0].maximum_speed_mps, 0.5);
+    let roll = pack.skill_named("roll").unwrap();
+    let mut moving = standing();
+    moving.bodies[0].linear_velocity = policy_core::glam::Vec3::new(0.0, 0.9, 0.0);
+    let mut controller = Controller::new(pack);
+    controller.tick(&moving, &Command { skill: Some(roll), ..Command::default() }, DT);
+    for _ in 0..30 {
+        controller.tick(&moving, &Command::default(), DT);
+        assert_eq!((controller.report().skill, controller.report().pending_skill), (None, Some(roll)));
+    }
+    controller.tick(&standing(), &Command::default(), DT);
+    assert_eq!(controller.report().skill_started, Some(roll));
+    for (least, most) in [(0.0, 0.0), (0.8, 0.8), (0.0, 20.5), (0.0, f32::NAN)] {
+        (manifest.skills[0].minimum_speed_mps, manifest.skills[0].maximum_speed_mps) = (least, Some(most));
+        let error =
+            CharacterPack::from_parts(manifest.clone(), common::tensors(-4.0)).unwrap_err().to_string();
+        assert!(error.contains("maximum_speed_mps") && error.contains("roll"), "{error}");
+    }
+}
+
+#[test]
 fn a_skill_that_needs_speed_takes_a_run_up_and_gives_up_when_it_is_blocked() {
     let mut manifest = common::manifest();
     manifest.skills[0].minimum_speed_mps = 0.8;

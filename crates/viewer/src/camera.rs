@@ -31,6 +31,8 @@ pub struct Camera {
     size: f32,
     /// How far back it may stand.
     room: Room,
+    /// How far back it stands beyond its distance, so that two players are seen, metres.
+    further: f32,
 }
 
 /// Height of the root body of a standing person, metres.
@@ -48,6 +50,7 @@ impl Default for Camera {
             head: Vec3::new(0.0, 0.0, 1.5),
             size: 1.0,
             room: Room::default(),
+            further: 0.0,
         };
         camera.eye = camera.orbit_eye(0.0);
         camera
@@ -73,6 +76,13 @@ const PITCH_FROM: [f32; 2] = [-1.4, 1.4];
 /// Speed of the free camera, metres per second, and its way for one notch of the wheel that doubles the distance of others.
 const FLY_MPS: f32 = 4.0;
 const FLY_M: f32 = 2.5;
+
+/// Two players: distance of the camera for each metre between them, what it stands further back in any case, at most, metres, and
+/// seconds in which it makes up for two thirds of its lag.
+const APART_SHARE: f32 = 1.5;
+const PLAYERS_MARGIN_M: f32 = 1.2;
+const MOST_FURTHER_M: f32 = 25.0;
+const FURTHER_SECS: f32 = 0.6;
 
 impl Camera {
     /// Looks at a character whose root body stands `root_height` metres above the ground.
@@ -171,10 +181,18 @@ impl Camera {
 
     /// Takes `dt` seconds in which something hides the character from `hit` metres along [`Camera::line`] on.
     pub fn keep_clear(&mut self, dt: f32, hit: Option<f32>) {
-        self.room.advance(dt, hit, self.distance);
+        self.room.advance(dt, hit, self.distance + self.further);
         if self.mode.circles() {
             self.eye = self.orbit_eye(0.0);
         }
+    }
+
+    /// Takes `dt` seconds in which two players are `apart` metres from each other; 0 for one player. It steps back until both are in
+    /// the picture, if it circles.
+    pub fn make_room_for(&mut self, dt: f32, apart: f32) {
+        let wanted = if apart.is_finite() { (apart * APART_SHARE - self.distance).max(0.0) } else { 0.0 };
+        let wanted = if apart > 0.0 { (wanted + PLAYERS_MARGIN_M).min(MOST_FURTHER_M) } else { 0.0 };
+        self.further += (wanted - self.further) * (1.0 - (-dt.max(0.0) / FURTHER_SECS).exp());
     }
 
     /// Goes at once to where it would come to rest.
@@ -214,7 +232,7 @@ impl Camera {
     fn orbit_eye(&self, around: f32) -> Vec3 {
         let (sin, cos) = (self.yaw + around).sin_cos();
         let back = Vec3::new(-cos * self.pitch.cos(), -sin * self.pitch.cos(), self.pitch.sin());
-        let mut eye = self.target + back * self.room.limit(self.distance);
+        let mut eye = self.target + back * self.room.limit(self.distance + self.further);
         eye.z = eye.z.max(LEAST_HEIGHT_M);
         eye
     }
@@ -232,6 +250,20 @@ mod tests {
         assert!((view.target.truncate() - Vec2::new(3.0, 4.0)).length() < 1e-4);
         let along = Heading::from_direction((view.target - view.eye).truncate());
         assert!((along.angle() - 1.0).abs() < 1e-5 && (camera.heading().angle() - 1.0).abs() < 1e-5);
+    }
+
+    #[test]
+    fn it_steps_back_until_two_players_are_in_the_picture() {
+        let mut camera = Camera::default();
+        let far = |camera: &Camera| camera.view(0.0).eye.distance(camera.view(0.0).target);
+        let alone = far(&camera);
+        camera.make_room_for(100.0, 8.0);
+        assert!(far(&camera) > 8.0 && far(&camera) < 16.0, "{}", far(&camera));
+        camera.make_room_for(100.0, 1e6);
+        assert!(far(&camera) < 40.0, "{}", far(&camera));
+        camera.make_room_for(100.0, f32::NAN);
+        camera.make_room_for(100.0, 0.0);
+        assert!((far(&camera) - alone).abs() < 1e-3, "{}", far(&camera));
     }
 
     #[test]

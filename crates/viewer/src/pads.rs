@@ -1,6 +1,7 @@
-//! Reads gamepads for the demo: the active one, and what could not be read, in words.
+//! Reads gamepads for the demo: that of each player, and what could not be read, in words.
 
-use gamepad::Gamepads;
+use gamepad::device::DeviceKey;
+use gamepad::{Button, Buttons, Gamepads, Pad};
 
 use crate::app::PadView;
 
@@ -8,6 +9,37 @@ use crate::app::PadView;
 pub struct Pads {
     pads: Gamepads,
     complaints: Vec<String>,
+    players: Players,
+}
+
+/// Which pad is whose. Start makes a pad the second player's, or gives it back.
+#[derive(Clone, Debug, Default, PartialEq)]
+struct Players {
+    second: Option<DeviceKey>,
+    /// The first player's, as long as it does not use another.
+    first: Option<DeviceKey>,
+    /// Buttons of each pad in the poll before.
+    held: Vec<(DeviceKey, Buttons)>,
+}
+
+impl Players {
+    /// Takes the buttons of every pad, and the pad that was used last.
+    fn follow(&mut self, pads: &[(DeviceKey, Buttons)], used: Option<DeviceKey>) {
+        let there = |key: &DeviceKey| pads.iter().any(|(pad, _)| pad == key);
+        let before = |key: &DeviceKey| self.held.iter().find(|(pad, _)| pad == key).map(|(_, held)| *held);
+        let pressed = pads.iter().find(|(key, now)| {
+            now.contains(Button::Start) && before(key).is_some_and(|held| !held.contains(Button::Start))
+        });
+        if let Some((key, _)) = pressed {
+            self.second = if self.second == Some(*key) { None } else { Some(*key) };
+        }
+        self.second = self.second.filter(there);
+        let mine = |key: &DeviceKey| there(key) && Some(*key) != self.second;
+        let any = || pads.iter().map(|(key, _)| *key).find(mine);
+        self.first = used.filter(mine).or(self.first.filter(mine)).or_else(any);
+        self.held.clear();
+        self.held.extend_from_slice(pads);
+    }
 }
 
 impl std::fmt::Debug for Pads {
@@ -21,16 +53,24 @@ impl Pads {
     #[must_use]
     pub fn start() -> Self {
         let (pads, errors) = Gamepads::with_all_backends();
-        Self { pads, complaints: errors.iter().map(ToString::to_string).collect() }
+        let complaints = errors.iter().map(ToString::to_string).collect();
+        Self { pads, complaints, players: Players::default() }
     }
 
     /// Reads the pads. Without one the state is neutral.
     pub fn poll(&mut self, view: &mut PadView) {
         self.pads.poll();
-        let report = self.pads.report();
-        let active = self.pads.active();
-        view.name = active.map(|pad| format!("{} through {:?}", pad.device.name, pad.device.source));
+        let pads = &self.pads;
+        let held: Vec<_> =
+            pads.pads().map(|pad| (pad.device.key, pads.report_of(pad).state.buttons)).collect();
+        self.players.follow(&held, pads.active().map(|pad| pad.device.key));
+        let pad_of = |key: Option<DeviceKey>| pads.pads().find(|pad| Some(pad.device.key) == key);
+        let (active, second) = (pad_of(self.players.first), pad_of(self.players.second));
+        let name = |pad: &Pad| format!("{} through {:?}", pad.device.name, pad.device.source);
+        view.name = active.map(name);
+        let report = active.map(|pad| pads.report_of(pad)).unwrap_or_default();
         (view.raw, view.state) = (report.input.raw, report.state);
+        view.second = second.map(|pad| pads.report_of(pad).state);
         view.problems.clear();
         view.problems.extend(self.complaints.iter().cloned());
         let unread = self.pads.problems().iter();
@@ -38,5 +78,53 @@ impl Pads {
         if let Some(error) = active.and_then(gamepad::Pad::last_error) {
             view.problems.push(format!("not understood: {error}"));
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const REST: Buttons = Buttons::NONE;
+
+    fn start() -> Buttons {
+        let mut held = Buttons::NONE;
+        held.set(Button::Start, true);
+        held
+    }
+
+    #[test]
+    fn start_gives_a_pad_to_the_second_player_and_back() {
+        let (a, b) = (DeviceKey(1), DeviceKey(2));
+        let mut players = Players::default();
+        players.follow(&[(a, REST), (b, REST)], Some(a));
+        assert_eq!((players.first, players.second), (Some(a), None));
+        players.follow(&[(a, REST), (b, start())], Some(b));
+        assert_eq!((players.first, players.second), (Some(a), Some(b)));
+        // Held on, it does nothing more, and the second player's pad is never the first's.
+        players.follow(&[(a, REST), (b, start())], Some(b));
+        assert_eq!((players.first, players.second), (Some(a), Some(b)));
+        players.follow(&[(a, REST), (b, REST)], Some(b));
+        players.follow(&[(a, REST), (b, start())], Some(b));
+        assert_eq!((players.first, players.second), (Some(b), None));
+    }
+
+    #[test]
+    fn a_single_pad_can_be_the_second_players_beside_a_keyboard() {
+        let a = DeviceKey(1);
+        let mut players = Players::default();
+        players.follow(&[(a, REST)], None);
+        players.follow(&[(a, start())], Some(a));
+        assert_eq!((players.first, players.second), (None, Some(a)));
+        // Unplugged, nobody has it.
+        players.follow(&[], None);
+        assert_eq!((players.first, players.second), (None, None));
+    }
+
+    #[test]
+    fn a_button_that_is_held_while_a_pad_connects_does_nothing() {
+        let mut players = Players::default();
+        players.follow(&[(DeviceKey(1), start())], Some(DeviceKey(1)));
+        assert_eq!(players.second, None);
     }
 }

@@ -75,10 +75,12 @@ impl Controller {
             return;
         }
         let skill = &self.pack.skills()[pending.index()];
-        let velocity = state.root().linear_velocity.truncate();
-        let fast = skill.minimum_speed_mps == 0.0
-            || velocity.length_squared() >= skill.minimum_speed_mps * skill.minimum_speed_mps;
-        if fast && skill.starts_from(self.state.report.position.nearest_node()) {
+        let squared = state.root().linear_velocity.truncate().length_squared();
+        let [least, most] = [skill.minimum_speed_mps, skill.maximum_speed_mps];
+        // One without conditions starts in any state.
+        let in_range =
+            (least == 0.0 || squared >= least * least) && (most.is_infinite() || squared <= most * most);
+        if in_range && skill.starts_from(self.state.report.position.nearest_node()) {
             return self.start_skill(pending);
         }
         self.state.pending_secs += dt;

@@ -91,6 +91,7 @@ pub fn manifest() -> Manifest {
         policy: "roll".into(),
         entry: entry.iter().map(|n| (*n).into()).collect(),
         minimum_speed_mps: 0.0,
+        maximum_speed_mps: None,
         returns_to: "walk".into(),
         discriminator: Some("walk".into()),
         end,

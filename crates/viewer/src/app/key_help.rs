@@ -42,7 +42,7 @@ const OTHER_KEYS: [(&str, &str); 14] = [
 ];
 
 /// What pad controls do, for the help overlay.
-pub const PAD: [(&str, &str); 10] = [
+pub const PAD: [(&str, &str); 11] = [
     ("left stick", "direction and speed"),
     ("right stick", "camera"),
     ("right trigger", "faster: walk, jog, run"),
@@ -53,4 +53,5 @@ pub const PAD: [(&str, &str); 10] = [
     ("right shoulder", "hold: the other style, where the character has one"),
     ("left shoulder", "knock the character over"),
     ("d-pad up, down", "in the playground: throw a ball, put a prop down"),
+    ("start", "in the playground: this pad is a second player's, or no more"),
 ];

@@ -65,6 +65,8 @@ pub struct PadView {
     pub raw: GamepadState,
     /// After dead zones; neutral without a pad.
     pub state: GamepadState,
+    /// Of a second player, once one has joined.
+    pub second: Option<GamepadState>,
     /// What could not be read or understood, and what to do.
     pub problems: Vec<String>,
 }
@@ -137,6 +139,8 @@ pub struct App {
     escape_taken: bool,
     /// What was refused a moment ago, and for how many seconds it is still said.
     refused: Option<(String, f32)>,
+    /// A second player's pad was refused, which is said once.
+    second_refused: bool,
     /// The triggers when a panel took over from them.
     overridden_at: GamepadState,
     /// The ground has changed: the frame composer uploads it and clears this.
@@ -191,6 +195,7 @@ impl App {
             free: egui::Rect::ZERO,
             escape_taken: false,
             refused: None,
+            second_refused: false,
             overridden_at: GamepadState::default(),
             ground_changed: true,
             best: Best::default(),
@@ -242,8 +247,9 @@ impl App {
     pub fn follow(&mut self, dt: f32, alpha: f32) {
         let input = self.input();
         let player = self.sim.player();
-        let root = self.sim.poses(0, alpha).positions[0];
+        let (root, apart) = self.middle(alpha);
         let (heading, ground) = (player.heading(), player.state.ground_height);
+        self.camera.make_room_for(dt, apart);
         let stick = self.layout.preferences.stick(input.right_stick);
         self.camera.advance(dt, stick, root, heading, ground);
         self.camera.follow_head(dt, self.head(alpha));
@@ -259,6 +265,7 @@ impl App {
     pub fn tick(&mut self) -> Vec<Divergence> {
         self.pull();
         let Some((input, camera)) = self.steering() else { return Vec::new() };
+        self.follow_second();
         self.give_back_to_triggers(&input);
         self.sim.overrides.blend = self.layers.blend();
         let divergences = self.sim.tick(&input, camera);

@@ -5,6 +5,8 @@ use policy_core::GamepadState;
 
 use super::first_steps::path;
 use super::{App, Doing, Keys};
+use crate::replays::Replaying;
+use crate::sim::SECOND_CHARACTER;
 
 /// Height of the eyes above the root of a character without a head, metres.
 const EYES_ABOVE_ROOT_M: f32 = 0.4;
@@ -33,7 +35,10 @@ impl App {
 
     /// Lets `dt` seconds of the clock on the wall pass for what waits for the player.
     pub(super) fn watch_user(&mut self, dt: f32) {
-        let steered = self.pad.state != GamepadState::default() || self.keys != Keys::default();
+        let at_rest = |pad: &GamepadState| *pad == GamepadState::default();
+        let steered = !at_rest(&self.pad.state)
+            || self.pad.second.is_some_and(|pad| !at_rest(&pad))
+            || self.keys != Keys::default();
         let busy = self.help || self.leaving || self.choosing || self.recording.is_some();
         let runs = !self.clock.paused && self.failure.is_none() && self.sim.playback().is_none();
         let wanted = self.layout.preferences.plays_tour;
@@ -65,6 +70,34 @@ impl App {
             pull_newtons: self.grab.map_or(0.0, |grab| grab.force().length()),
         };
         self.first_steps.observe(&doing, pack);
+    }
+
+    /// Hands the second player's pad on, and tells who comes and goes. Replays and the tour know one player.
+    pub(super) fn follow_second(&mut self) {
+        let alone = !matches!(self.replaying, Replaying::Off) || self.tour.is_playing();
+        let wanted = self.pad.second.filter(|_| !alone);
+        let was = self.sim.has_second_player();
+        let taken = self.sim.set_second_pad(wanted.as_ref());
+        match (was, self.sim.has_second_player()) {
+            (false, true) => self.toasts.note("A second player steers a character. Start leaves it."),
+            (true, false) => self.toasts.note("The second player has left."),
+            _ if !taken && !self.second_refused => {
+                self.toasts.error("A second player needs the playground and a second character there.");
+            }
+            _ => {}
+        }
+        self.second_refused = !taken;
+    }
+
+    /// The middle of the players' root bodies, `alpha` of the way into the last tick, and how far they are apart, metres.
+    pub(super) fn middle(&self, alpha: f32) -> (Vec3, f32) {
+        let root = |index| self.sim.poses(index, alpha).positions[0];
+        let first = root(0);
+        if !self.sim.has_second_player() {
+            return (first, 0.0);
+        }
+        let second = root(SECOND_CHARACTER);
+        (first.midpoint(second), first.distance(second))
     }
 
     /// Where the player's eyes are, `alpha` of the way into the last tick.

@@ -69,6 +69,7 @@ struct Headless<'a> {
     demo: &'a Demo,
     app: App,
     input: PadInput,
+    second: Option<PadInput>,
     seconds: f64,
     ended_by: Option<Signal>,
     painter: Option<Painter>,
@@ -98,7 +99,7 @@ impl<'a> Headless<'a> {
     }
 
     fn new(demo: &'a Demo, replay: Option<&Replay>) -> anyhow::Result<Self> {
-        let input = PadInput::load(demo)?;
+        let (input, second) = (PadInput::load(demo)?, PadInput::load_second(demo)?);
         let opened = open(demo)?;
         let mut app = opened.app;
         replay_files::begin(demo, replay, &mut app)?;
@@ -120,7 +121,17 @@ impl<'a> Headless<'a> {
             Some(folder) => Some(Painter::new(demo, folder, opened.appearance, &mut app)?),
             None => None,
         };
-        Ok(Self { demo, app, input, seconds, ended_by: None, painter, divergences: 0, replays: Vec::new() })
+        Ok(Self {
+            demo,
+            app,
+            input,
+            second,
+            seconds,
+            ended_by: None,
+            painter,
+            divergences: 0,
+            replays: Vec::new(),
+        })
     }
 
     fn tick_secs(&self) -> f64 {
@@ -132,6 +143,7 @@ impl<'a> Headless<'a> {
         let start = tick as f64 * tick_secs;
         let pad = self.input.state_at(start);
         (self.app.pad.raw, self.app.pad.state) = (pad, pad);
+        self.app.pad.second = self.second.as_mut().map(|second| second.state_at(start));
         for divergence in self.app.tick() {
             self.keep(&divergence)?;
             self.app.sim.stand_up(divergence.character);

@@ -86,6 +86,9 @@ pub struct Demo {
     /// Pad input recorded from a device by `pad record`, instead of a script.
     #[arg(long, value_name = "FILE", requires = "headless", conflicts_with = "script")]
     pub recording: Option<PathBuf>,
+    /// Pad input of a second player over time (RON), who takes over a character of the playground.
+    #[arg(long, value_name = "FILE", requires = "headless", conflicts_with_all = ["replay", "poses", "record_replay"])]
+    pub second_script: Option<PathBuf>,
     /// Record what is pressed into this file: a replay, to be played on any machine.
     #[arg(long, value_name = "FILE")]
     pub record_replay: Option<PathBuf>,

@@ -1,11 +1,18 @@
 //! Where a run without a window gets its pad from: a script, a recording of a device, or nowhere.
 
+use std::path::Path;
+
 use anyhow::Context as _;
 use gamepad::recording::{Recording, VirtualPad};
 use gamepad::{GamepadState, Script};
 
 use super::Demo;
 use crate::files;
+
+/// A pipe that nothing is written to would be waited for without end.
+fn check(path: &Path) -> anyhow::Result<()> {
+    files::check_regular(path).with_context(|| path.display().to_string())
+}
 
 /// A pad that depends on time alone.
 pub enum PadInput {
@@ -23,15 +30,22 @@ impl PadInput {
     /// # Errors
     /// When a file can't be read or is no script or recording, or a recording's pad is not known.
     pub fn load(demo: &Demo) -> anyhow::Result<Self> {
-        for path in demo.script.iter().chain(&demo.recording) {
-            // A pipe that nothing is written to would be waited for without end.
-            files::check_regular(path).with_context(|| path.display().to_string())?;
-        }
+        demo.script.iter().chain(&demo.recording).try_for_each(|path| check(path))?;
         if let Some(path) = &demo.recording {
             let pad = VirtualPad::new(Recording::load(path)?).with_context(|| path.display().to_string())?;
             return Ok(Self::Recording(Box::new(pad)));
         }
         Ok(demo.script.as_deref().map(Script::load).transpose()?.map_or(Self::Neutral, Self::Script))
+    }
+
+    /// The pad of a second player, where the command line asks for one.
+    ///
+    /// # Errors
+    /// As [`PadInput::load`].
+    pub fn load_second(demo: &Demo) -> anyhow::Result<Option<Self>> {
+        let Some(path) = &demo.second_script else { return Ok(None) };
+        check(path)?;
+        Ok(Some(Self::Script(Script::load(path)?)))
     }
 
     /// Seconds it lasts; `None` for a pad at rest.

@@ -9,6 +9,7 @@ mod playback;
 mod queries;
 mod rewind;
 mod scene_kind;
+mod second;
 mod setup;
 mod shared;
 mod steered;
@@ -33,6 +34,8 @@ pub use physics_bridge::GroundKind;
 pub use playback::Playback;
 use rewind::PadRing;
 pub use scene_kind::SceneKind;
+pub use second::SECOND_CHARACTER;
+use second::SecondPlayer;
 pub use setup::{MAX_CHARACTERS, SimConfig, model_of, rest_positions};
 use shared::Wishes;
 pub use shared::{Held, LooseKind, MOST_BALLS, Piece, SharedWorld};
@@ -112,6 +115,7 @@ pub struct Simulation {
     mapper: CommandMapper,
     /// The pad of the last tick: buttons act when they go down.
     last_pad: GamepadState,
+    second: Option<SecondPlayer>,
     pads: PadRing,
     shove: Shove,
     /// Stands in for the pad.
@@ -139,8 +143,10 @@ impl Simulation {
         let command = self.command(pad, camera);
         let home = self.steered[0].position();
         self.shove(pad, camera);
-        self.throw(pad, camera);
-        let divergences = self.step(&command, dt_secs);
+        let last_pad = self.last_pad;
+        self.throw(0, [&last_pad, pad], camera);
+        let second = self.tick_second(camera);
+        let divergences = self.step(&command, second.as_ref(), dt_secs);
         if let Some(ghost) = &mut self.ghost {
             ghost.tick(&command, home, dt_secs);
         }
@@ -186,7 +192,7 @@ impl Simulation {
     }
 
     /// Controllers and physics of all characters.
-    fn step(&mut self, command: &Command, dt_secs: f32) -> Vec<Divergence> {
+    fn step(&mut self, command: &Command, second: Option<&Command>, dt_secs: f32) -> Vec<Divergence> {
         let home = self.steered[0].position();
         match &mut self.bodies {
             Bodies::Apart(crowd) => {
@@ -200,7 +206,7 @@ impl Simulation {
                 self.observe(dt_secs)
             }
             Bodies::Together(shared) => {
-                shared.give_commands(command, self.wishes, &mut self.steered, dt_secs);
+                shared.give_commands([Some(command), second], self.wishes, &mut self.steered, dt_secs);
                 let put_back = shared.tick(&mut self.steered, self.model.described(), dt_secs);
                 self.times.policy = shared.control_time();
                 self.observe_together(&put_back, dt_secs);

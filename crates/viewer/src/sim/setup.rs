@@ -140,6 +140,7 @@ impl Simulation {
             playback: None,
             mapper,
             last_pad: GamepadState::default(),
+            second: None,
             pads,
             shove,
             overrides: Overrides::default(),
@@ -196,7 +197,7 @@ impl Simulation {
         self.model = model;
         (self.bodies, self.steered) = (populated.bodies, populated.steered);
         (self.pads, self.shove) = (populated.pads, populated.shove);
-        (self.ghost, self.last_pad) = (None, GamepadState::default());
+        (self.ghost, self.last_pad, self.second) = (None, GamepadState::default(), None);
         self.mapper.reset();
     }
 }

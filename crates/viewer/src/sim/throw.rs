@@ -20,13 +20,14 @@ const THROWN_FROM_M: [f32; 2] = [0.55, 0.45];
 const SPAWNED_AT_M: [f32; 2] = [1.4, 0.3];
 
 impl Simulation {
-    /// Throws and puts down when the buttons go down; nothing on the empty floor.
-    pub(super) fn throw(&mut self, pad: &GamepadState, camera: Heading) {
-        let pressed = pad.buttons.pressed_since(self.last_pad.buttons);
+    /// Throws and puts down when the buttons of a player go down, between the last tick's pad and this one's; nothing on the empty
+    /// floor.
+    pub(super) fn throw(&mut self, player: usize, [last, pad]: [&GamepadState; 2], camera: Heading) {
+        let pressed = pad.buttons.pressed_since(last.buttons);
         let (throws, spawns) = (pressed.contains(THROW_BUTTON), pressed.contains(SPAWN_BUTTON));
         let Bodies::Together(shared) = &mut self.bodies else { return };
         let ahead = camera.direction().extend(0.0);
-        let from = self.steered[0].state.root().position;
+        let from = self.steered[player].state.root().position;
         let place = |[far, high]: [f32; 2]| from + ahead * far + Vec3::Z * high;
         // A player at the end of the world throws nothing.
         if throws {

@@ -41,20 +41,25 @@ impl Wishes {
 }
 
 impl SharedWorld {
-    /// Gives the player its command and the others theirs.
+    /// Gives the players their commands, the first characters in order, and those that wander theirs.
     pub(in crate::sim) fn give_commands(
         &mut self,
-        player: &Command,
+        players: [Option<&Command>; 2],
         wishes: Wishes,
         steered: &mut [SteeredCharacter],
         dt_secs: f32,
     ) {
-        let Some((first, others)) = steered.split_first_mut() else { return };
-        let at = first.position();
-        first.receive(player, at);
-        for (other, wanderer) in others.iter_mut().zip(&mut self.state.wanderers) {
-            let wish = wanderer.tick(other.position(), dt_secs);
-            other.command = wishes.command(wish, other);
+        for (index, character) in steered.iter_mut().enumerate() {
+            let at = character.position();
+            // The first character does not wander.
+            let wanderer = index.checked_sub(1).and_then(|index| self.state.wanderers.get_mut(index));
+            // One that a player has taken over wanders on where it finds itself afterwards.
+            let wish = wanderer.map(|wanderer| wanderer.tick(at, dt_secs));
+            match (players.get(index).copied().flatten(), wish) {
+                (Some(command), _) => character.receive(command, at),
+                (None, Some(wish)) => character.command = wishes.command(wish, character),
+                (None, None) => {}
+            }
         }
     }
 }
