@@ -7,6 +7,8 @@ const canvas = at('view');
 
 const told = { error: null, firstFrameMs: null, fps: 0, physicsMs: 0, adapter: '' };
 let demo = null;
+/** Of the module. */
+let exports = null;
 
 function problem(text) {
   told.error ??= text;
@@ -58,7 +60,7 @@ async function start() {
   ]);
   loaded.code = files.code.bytes;
   at('step').textContent = 'Starting';
-  await code.default({ module_or_path: wasm });
+  exports = await code.default({ module_or_path: wasm });
   fit();
   const players = Math.min(8, Math.max(1, Number(query.get('players')) || 1));
   demo = await code.Demo.start(canvas, pack, mesh, players);
@@ -110,7 +112,7 @@ function frame(now) {
     told.fps = frames * 1000 / (now - frameStart);
     [frames, frameStart] = [0, now];
     at('doing').textContent = demo.doing();
-    if (told.fps < 24 && drawScale > 0.5) { drawScale -= 0.25; fit(); }
+    if (told.fps < 24) drawLess();
     at('rate').textContent = `${told.fps.toFixed(0)} fps, physics ${told.physicsMs.toFixed(1)} ms a tick`;
   }
   requestAnimationFrame(frame);
@@ -119,8 +121,12 @@ document.addEventListener('visibilitychange', () => {
   if (!document.hidden && demo && !told.error) { last = null; requestAnimationFrame(frame); }
 });
 
-// Pixels are what a slow machine has too many of: it draws fewer, down to half as many along each side.
+// A slow machine draws coarser shadows and meshes, then fewer pixels, down to half as many along each side.
 let drawScale = 1;
+let drawsCheaply = false;
+function drawLess() {
+  if (!drawsCheaply) { drawsCheaply = true; demo.draw_cheaply(); } else if (drawScale > 0.5) { drawScale -= 0.25; fit(); }
+}
 function fit() {
   const ratio = Math.min(devicePixelRatio || 1, 2) * drawScale;
   canvas.width = Math.max(1, Math.round(innerWidth * ratio));
@@ -254,7 +260,7 @@ addEventListener('drop', async (event) => {
 // ---- For checks
 
 window.policySpace = () => (demo && !told.error
-  ? { ...told, ticks: demo.ticks(), hash: demo.hash(), mode: demo.mode(), doing: demo.doing(), memory: performance.memory?.usedJSHeapSize ?? null }
+  ? { ...told, ticks: demo.ticks(), hash: demo.hash(), mode: demo.mode(), doing: demo.doing(), memory: (performance.memory?.usedJSHeapSize ?? 0) + exports.memory.buffer.byteLength }
   : { ...told, ticks: 0 });
 window.policySpacePicture = () => {
   const copy = Object.assign(document.createElement('canvas'), { width: canvas.width, height: canvas.height });

@@ -79,6 +79,11 @@ impl Demo {
         self.stage.draw(&self.game)
     }
 
+    /// Draws coarser shadows and meshes from now on: for a machine that is slow.
+    pub fn draw_cheaply(&mut self) {
+        self.stage.draw_cheaply();
+    }
+
     /// Turns the camera, radians; for a mouse or a finger.
     pub fn turn(&mut self, x: f32, y: f32) {
         self.stage.turn(x, y);

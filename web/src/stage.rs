@@ -29,11 +29,7 @@ pub struct Stage {
 
 impl Stage {
     /// Opens a canvas to draw the characters of `game` with a mesh.
-    pub async fn open(
-        canvas: web_sys::HtmlCanvasElement,
-        game: &Game,
-        mesh: &[u8],
-    ) -> Result<Self, JsError> {
+    pub async fn open(canvas: web_sys::HtmlCanvasElement, game: &Game, mesh: &[u8]) -> Result<Self, JsError> {
         let size = [canvas.width().max(1), canvas.height().max(1)];
         let rig = rig(game)?;
         let mesh = SkinnedMesh::from_bytes(mesh, &rig)?;
@@ -49,8 +45,14 @@ impl Stage {
         surface.configure(&gpu.device, &configuration);
         let config = RenderConfig::for_adapter(gpu.is_software);
         let renderer = Renderer::new(&gpu, configuration.format, config, appearance);
-        let mut stage =
-            Self { gpu, surface, configuration, renderer, camera: Camera::default(), scene: Scene::default() };
+        let mut stage = Self {
+            gpu,
+            surface,
+            configuration,
+            renderer,
+            camera: Camera::default(),
+            scene: Scene::default(),
+        };
         stage.reset(game);
         Ok(stage)
     }
@@ -78,6 +80,13 @@ impl Stage {
             [self.configuration.width, self.configuration.height] = size;
             self.surface.configure(&self.gpu.device, &self.configuration);
         }
+    }
+
+    /// As for a processor that draws, from now on.
+    pub fn draw_cheaply(&mut self) {
+        let appearance = self.renderer.appearance().clone();
+        let config = RenderConfig::for_adapter(true);
+        self.renderer = Renderer::new(&self.gpu, self.configuration.format, config, appearance);
     }
 
     /// The camera behind the player again.

@@ -30,7 +30,7 @@ pub struct RateReport {
     pub success: f32,
     /// Tries.
     pub tries: usize,
-    /// Share that the discriminator ended, not the time limit.
+    /// Share that the discriminator ended, not the time limit; of a skill without one, that the time ended.
     pub recognised: f32,
     /// Mean seconds until it did.
     pub seconds: f32,
@@ -135,8 +135,8 @@ pub fn watch_skill(
     states
 }
 
-/// Tries of an episodic skill out of the node it returns to, walking, that the discriminator ends within 3 s and after which the
-/// character still walks a second later.
+/// Tries of an episodic skill out of the node it returns to, with a target ahead, that end within 3 s as they are meant to, and after
+/// which the character is still up a second later.
 ///
 /// # Panics
 /// When the pack has no such skill.
@@ -145,6 +145,12 @@ pub fn measure_skill(model: &Model, pack: &Arc<CharacterPack>, skill: SkillId, t
     let tries: Vec<_> =
         (0..tries).into_par_iter().map(|i| comes_back(model, pack, skill, i as u64)).collect();
     RateReport::of(&tries)
+}
+
+/// True for the end that a skill is meant to have: by its discriminator, or by its time where it has none.
+pub(crate) fn ended_well(pack: &CharacterPack, skill: SkillId, end: SkillEnd) -> bool {
+    let by_time = pack.skills()[skill.index()].discriminator.is_none();
+    end == if by_time { SkillEnd::TimeLimit } else { SkillEnd::Recognised }
 }
 
 fn comes_back(model: &Model, pack: &Arc<CharacterPack>, skill: SkillId, seed: u64) -> (bool, Option<f32>) {
@@ -160,7 +166,9 @@ fn comes_back(model: &Model, pack: &Arc<CharacterPack>, skill: SkillId, seed: u6
         if !eval.tick(&command) || (tick < start && eval.controller.report().fallen) {
             return (false, ended);
         }
-        if let Some((_, SkillEnd::Recognised)) = eval.controller.report().skill_ended {
+        if let Some((skill, end)) = eval.controller.report().skill_ended
+            && ended_well(pack, skill, end)
+        {
             ended = Some((tick - start) as f32 * TICK_SECS);
         }
     }

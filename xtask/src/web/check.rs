@@ -174,7 +174,7 @@ fn soak(browser: &Browser, minutes: f64) -> Result<Value> {
     loop {
         memory.push(state_of(browser)?["memory"].clone());
         if start.elapsed().as_secs_f64() >= 60.0 * minutes {
-            return Ok(json!({"minutes": minutes, "heap_bytes": memory}));
+            return Ok(json!({"minutes": minutes, "memory_bytes": memory}));
         }
         thread::sleep(Duration::from_secs_f64(60.0_f64.min(60.0 * minutes)));
     }

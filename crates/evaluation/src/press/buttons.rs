@@ -3,10 +3,11 @@
 use std::collections::BTreeMap;
 
 use policy_core::bindings::{Bindings, Control};
-use policy_core::{Button, CharacterPack, SkillEnd, SkillId};
+use policy_core::{Button, CharacterPack, SkillId};
 use serde::{Deserialize, Serialize};
 
 use crate::Rig;
+use crate::skills::ended_well;
 use crate::trial::{Settled, TICK_SECS, median, ticks};
 
 /// A pelvis below this is low, metres.
@@ -118,7 +119,9 @@ fn press(rig: &Rig<'_>, from: &Settled, button: Button, skill: Option<SkillId>) 
         press.started |= skill.is_some() && report.skill_started == skill;
         press.refused |= report.skill_refused.is_some();
         match report.skill_ended {
-            Some((ended, SkillEnd::Recognised)) if Some(ended) == skill => press.secs = Some(secs),
+            Some((ended, end)) if Some(ended) == skill && ended_well(rig.pack, ended, end) => {
+                press.secs = Some(secs)
+            }
             Some(_) => press.secs = None,
             None => {}
         }

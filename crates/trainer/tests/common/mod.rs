@@ -17,7 +17,7 @@ pub fn project() -> PathBuf {
 
 /// A clip of a body that stands and sways, under any name: what clip it is doesn't matter here.
 pub fn write_clip(folder: &Path, name: &str) {
-    let frames = 25;
+    let frames = 49;
     let time = |i: usize| i as f32 / 24.0;
     let sway = |i: usize| (std::f32::consts::TAU * time(i)).sin();
     let rotations = |i: usize| {
