@@ -19,6 +19,9 @@ pub const C_INTERFACE: &[Step] = &[C_PROGRAM];
 
 const C_PROGRAM: Step = Step { name: "C interface: gcc, clang", run: c_interface::check };
 
+/// The target of the page.
+const WASM: &str = "wasm32-unknown-unknown";
+
 /// All checks in the order in which they run: quick ones first, the tests last, so that a run ends with theirs.
 pub const ALL: &[Step] = &[
     Step { name: "formatting", run: formatting },
@@ -29,10 +32,11 @@ pub const ALL: &[Step] = &[
     Step { name: "names", run: |workspace| words::check(workspace).map(|()| Verdict::Passed) },
     RULES,
     ADVISORIES,
-    Step { name: "no_std: wasm32", run: |workspace| no_std(workspace, "wasm32-unknown-unknown") },
+    Step { name: "no_std: wasm32", run: |workspace| no_std(workspace, WASM) },
     Step { name: "no_std: thumbv7em", run: |workspace| no_std(workspace, "thumbv7em-none-eabihf") },
     Step { name: "bits without vector units", run: plain_bits },
     Step { name: "clippy", run: clippy },
+    Step { name: "page: wasm32", run: page },
     C_PROGRAM,
     Step { name: "engines/bevy: no window", run: bevy::check },
     Step { name: "documentation", run: documentation },
@@ -51,6 +55,17 @@ fn clippy(workspace: &Workspace) -> Result<Verdict> {
     Ok(Verdict::Passed)
 }
 
+/// The page's module, a workspace of its own. Playing it needs a browser: `cargo xtask web --check`.
+fn page(workspace: &Workspace) -> Result<Verdict> {
+    const MANIFEST: &str = "web/Cargo.toml";
+    require_target(workspace, WASM)?;
+    run(workspace.cargo().args(["fmt", "--check", "--manifest-path", MANIFEST]))?;
+    let mut clippy = workspace.cargo();
+    clippy.args(["clippy", "--locked", "--target", WASM, "--manifest-path", MANIFEST, "--target-dir"]);
+    run(clippy.arg(workspace.target()).args(["--", "-D", "warnings"]))?;
+    Ok(Verdict::Passed)
+}
+
 fn documentation(workspace: &Workspace) -> Result<Verdict> {
     run(workspace.cargo().args(["doc", "--workspace", "--no-deps"]).env("RUSTDOCFLAGS", "-D warnings"))?;
     Ok(Verdict::Passed)
@@ -63,9 +78,7 @@ fn tests(workspace: &Workspace) -> Result<Verdict> {
 
 /// Builds policy-core without the standard library for a target that has none.
 fn no_std(workspace: &Workspace, target: &str) -> Result<Verdict> {
-    if !has_target(workspace, target) && !run_rustup(&["target", "add", target]) {
-        bail!("expected the target {target}, found none, and rustup could not add it");
-    }
+    require_target(workspace, target)?;
     let arguments = ["build", "-p", "policy-core", "--no-default-features", "--target", target];
     run(workspace.cargo().args(arguments))?;
     Ok(Verdict::Passed)
@@ -75,6 +88,14 @@ fn no_std(workspace: &Workspace, target: &str) -> Result<Verdict> {
 fn plain_bits(workspace: &Workspace) -> Result<Verdict> {
     run(workspace.cargo().args(["test", "-p", "policy-core", "--no-default-features", "--test", "blend"]))?;
     Ok(Verdict::Passed)
+}
+
+/// Adds a target to the toolchain when it is missing. A check that cannot run has failed.
+fn require_target(workspace: &Workspace, target: &str) -> Result<()> {
+    if has_target(workspace, target) || run_rustup(&["target", "add", target]) {
+        return Ok(());
+    }
+    bail!("expected the target {target}, found none, and rustup could not add it")
 }
 
 /// Whether the compiler has the libraries of a target.

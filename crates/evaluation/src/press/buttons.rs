@@ -120,7 +120,7 @@ fn press(rig: &Rig<'_>, from: &Settled, button: Button, skill: Option<SkillId>) 
         press.refused |= report.skill_refused.is_some();
         match report.skill_ended {
             Some((ended, end)) if Some(ended) == skill && ended_well(rig.pack, ended, end) => {
-                press.secs = Some(secs)
+                press.secs = Some(secs);
             }
             Some(_) => press.secs = None,
             None => {}
