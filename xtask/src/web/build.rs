@@ -8,11 +8,14 @@ use anyhow::{Context, Result, ensure};
 use serde_json::{Map, Value, json};
 use sha2::{Digest, Sha256};
 
-use crate::workspace::{Workspace, answers, output_of, run as run_command};
+use crate::workspace::{Workspace, output_of, run as run_command};
 
 const TARGET: &str = "wasm32-unknown-unknown";
 const MODULE: &str = "policy_space_web";
 const BINDER: &str = "wasm-bindgen";
+
+/// Least version of wasm-opt. 108, Debian's, mixes the tables of the module up, and it does not start.
+const LEAST_WASM_OPT: u32 = 132;
 
 /// The folder of the page, below the root.
 const FOLDER: &str = "out/web";
@@ -85,9 +88,19 @@ fn locked_version<'a>(lock: &'a str, package: &str) -> Option<&'a str> {
     lines.next()?.strip_prefix("version = \"")?.strip_suffix('"')
 }
 
+/// The number in what `wasm-opt --version` says.
+fn wasm_opt_version(said: &str) -> Option<u32> {
+    said.split_whitespace().find_map(|word| word.parse().ok())
+}
+
 fn shrink(workspace: &Workspace, wasm: &Path) -> Result<()> {
-    if !answers(Command::new("wasm-opt").arg("--version")) {
-        eprintln!("xtask: no wasm-opt here (Debian's package binaryen); the module stays larger");
+    let said = output_of(Command::new("wasm-opt").arg("--version")).unwrap_or_default();
+    let version = wasm_opt_version(&said);
+    if version.is_none_or(|version| version < LEAST_WASM_OPT) {
+        let found = version.map_or("none".to_owned(), |version| version.to_string());
+        eprintln!(
+            "xtask: expected wasm-opt {LEAST_WASM_OPT} or later (npm's package binaryen), found {found}; the module stays larger"
+        );
         return Ok(());
     }
     let small = wasm.with_extension("small");
@@ -133,6 +146,13 @@ fn lay_out(workspace: &Workspace, bound: &Path, folder: &Path) -> Result<()> {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn the_version_of_wasm_opt_is_read() {
+        assert_eq!(wasm_opt_version("wasm-opt version 108"), Some(108));
+        assert_eq!(wasm_opt_version("wasm-opt version 132 (version_132)"), Some(132));
+        assert_eq!(wasm_opt_version(""), None);
+    }
 
     #[test]
     fn the_version_of_the_binding_generator_is_read() {
