@@ -190,8 +190,12 @@ impl Camera {
     /// Takes `dt` seconds in which two players are `apart` metres from each other; 0 for one player. It steps back until both are in
     /// the picture, if it circles.
     pub fn make_room_for(&mut self, dt: f32, apart: f32) {
-        let wanted = if apart.is_finite() { (apart * APART_SHARE - self.distance).max(0.0) } else { 0.0 };
-        let wanted = if apart > 0.0 { (wanted + PLAYERS_MARGIN_M).min(MOST_FURTHER_M) } else { 0.0 };
+        let wanted = if apart > 0.0 {
+            let missing = (apart * APART_SHARE - self.distance).max(0.0);
+            (missing + PLAYERS_MARGIN_M).min(MOST_FURTHER_M)
+        } else {
+            0.0
+        };
         self.further += (wanted - self.further) * (1.0 - (-dt.max(0.0) / FURTHER_SECS).exp());
     }
 

@@ -24,7 +24,7 @@ struct Players {
 
 impl Players {
     /// Takes the buttons of every pad, and the pad that was used last.
-    fn follow(&mut self, pads: &[(DeviceKey, Buttons)], used: Option<DeviceKey>) {
+    fn follow(&mut self, pads: Vec<(DeviceKey, Buttons)>, used: Option<DeviceKey>) {
         let there = |key: &DeviceKey| pads.iter().any(|(pad, _)| pad == key);
         let before = |key: &DeviceKey| self.held.iter().find(|(pad, _)| pad == key).map(|(_, held)| *held);
         let pressed = pads.iter().find(|(key, now)| {
@@ -37,8 +37,7 @@ impl Players {
         let mine = |key: &DeviceKey| there(key) && Some(*key) != self.second;
         let any = || pads.iter().map(|(key, _)| *key).find(mine);
         self.first = used.filter(mine).or(self.first.filter(mine)).or_else(any);
-        self.held.clear();
-        self.held.extend_from_slice(pads);
+        self.held = pads;
     }
 }
 
@@ -61,9 +60,8 @@ impl Pads {
     pub fn poll(&mut self, view: &mut PadView) {
         self.pads.poll();
         let pads = &self.pads;
-        let held: Vec<_> =
-            pads.pads().map(|pad| (pad.device.key, pads.report_of(pad).state.buttons)).collect();
-        self.players.follow(&held, pads.active().map(|pad| pad.device.key));
+        let held = pads.pads().map(|pad| (pad.device.key, pads.report_of(pad).state.buttons)).collect();
+        self.players.follow(held, pads.active().map(|pad| pad.device.key));
         let pad_of = |key: Option<DeviceKey>| pads.pads().find(|pad| Some(pad.device.key) == key);
         let (active, second) = (pad_of(self.players.first), pad_of(self.players.second));
         let name = |pad: &Pad| format!("{} through {:?}", pad.device.name, pad.device.source);
@@ -97,15 +95,15 @@ mod tests {
     fn start_gives_a_pad_to_the_second_player_and_back() {
         let (a, b) = (DeviceKey(1), DeviceKey(2));
         let mut players = Players::default();
-        players.follow(&[(a, REST), (b, REST)], Some(a));
+        players.follow(vec![(a, REST), (b, REST)], Some(a));
         assert_eq!((players.first, players.second), (Some(a), None));
-        players.follow(&[(a, REST), (b, start())], Some(b));
+        players.follow(vec![(a, REST), (b, start())], Some(b));
         assert_eq!((players.first, players.second), (Some(a), Some(b)));
         // Held on, it does nothing more, and the second player's pad is never the first's.
-        players.follow(&[(a, REST), (b, start())], Some(b));
+        players.follow(vec![(a, REST), (b, start())], Some(b));
         assert_eq!((players.first, players.second), (Some(a), Some(b)));
-        players.follow(&[(a, REST), (b, REST)], Some(b));
-        players.follow(&[(a, REST), (b, start())], Some(b));
+        players.follow(vec![(a, REST), (b, REST)], Some(b));
+        players.follow(vec![(a, REST), (b, start())], Some(b));
         assert_eq!((players.first, players.second), (Some(b), None));
     }
 
@@ -113,18 +111,18 @@ mod tests {
     fn a_single_pad_can_be_the_second_players_beside_a_keyboard() {
         let a = DeviceKey(1);
         let mut players = Players::default();
-        players.follow(&[(a, REST)], None);
-        players.follow(&[(a, start())], Some(a));
+        players.follow(vec![(a, REST)], None);
+        players.follow(vec![(a, start())], Some(a));
         assert_eq!((players.first, players.second), (None, Some(a)));
         // Unplugged, nobody has it.
-        players.follow(&[], None);
+        players.follow(vec![], None);
         assert_eq!((players.first, players.second), (None, None));
     }
 
     #[test]
     fn a_button_that_is_held_while_a_pad_connects_does_nothing() {
         let mut players = Players::default();
-        players.follow(&[(DeviceKey(1), start())], Some(DeviceKey(1)));
+        players.follow(vec![(DeviceKey(1), start())], Some(DeviceKey(1)));
         assert_eq!(players.second, None);
     }
 }

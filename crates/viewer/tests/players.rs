@@ -2,29 +2,13 @@
 
 mod common;
 
-use std::sync::Arc;
-
-use common::simulation;
-use policy_core::{Buttons, CharacterPack, GamepadState, Heading};
+use common::{FORWARD, playground, simulation};
+use policy_core::{GamepadState, Heading};
 use viewer::app::{App, PanelLayout};
-use viewer::assets;
-use viewer::sim::{SECOND_CHARACTER, SceneKind, SimConfig, Simulation, THROW_BUTTON};
+use viewer::sim::{SECOND_CHARACTER, Simulation, THROW_BUTTON};
 
-const FORWARD: GamepadState = GamepadState {
-    left_stick: [0.0, 1.0],
-    right_stick: [0.0; 2],
-    left_trigger: 0.0,
-    right_trigger: 0.0,
-    buttons: Buttons::NONE,
-};
 const BACK: GamepadState = GamepadState { left_stick: [0.0, -1.0], ..FORWARD };
 const REST: GamepadState = GamepadState { left_stick: [0.0; 2], ..FORWARD };
-
-fn playground(characters: usize) -> Simulation {
-    let pack = Arc::new(CharacterPack::from_bytes(assets::HUMANOID_PACK).unwrap());
-    Simulation::new(pack, SimConfig { scene: SceneKind::Playground, characters, ..SimConfig::default() })
-        .unwrap()
-}
 
 fn run(sim: &mut Simulation, pad: &GamepadState, ticks: usize) {
     (0..ticks).for_each(|_| drop(sim.tick(pad, Heading::FORWARD)));

@@ -5,6 +5,7 @@ mod common;
 use std::sync::Arc;
 
 use common::harness::harness;
+use common::{FORWARD, playground, playground_config};
 use egui_kittest::Harness;
 use glam::{Vec2, Vec3};
 use physics_bridge::{Motion, PropHandle};
@@ -16,23 +17,6 @@ use viewer::sim::{
     Engine, GhostKind, GroundKind, Held, LooseKind, MOST_BALLS, SPAWN_BUTTON, SceneKind, SharedWorld,
     SimConfig, SimError, Simulation, THROW_BUTTON,
 };
-
-const FORWARD: GamepadState = GamepadState {
-    left_stick: [0.0, 1.0],
-    right_stick: [0.0; 2],
-    left_trigger: 0.0,
-    right_trigger: 0.0,
-    buttons: Buttons::NONE,
-};
-
-fn config(characters: usize) -> SimConfig {
-    SimConfig { scene: SceneKind::Playground, characters, history: true, ..SimConfig::default() }
-}
-
-fn playground(characters: usize) -> Simulation {
-    let pack = Arc::new(CharacterPack::from_bytes(assets::HUMANOID_PACK).unwrap());
-    Simulation::new(pack, config(characters)).unwrap()
-}
 
 fn shared(sim: &Simulation) -> &SharedWorld {
     sim.shared().expect("a playground")
@@ -128,7 +112,7 @@ fn the_pad_throws_a_ball_and_puts_a_prop_down_once_for_each_press() {
 fn others_wander_and_equal_seeds_wander_alike() {
     let run_of = |seed: u32| {
         let pack = Arc::new(CharacterPack::from_bytes(assets::HUMANOID_PACK).unwrap());
-        let config = SimConfig { seed, history: false, ..config(3) };
+        let config = SimConfig { seed, history: false, ..playground_config(3) };
         let mut sim = Simulation::new(pack, config).unwrap();
         let starts: Vec<Vec2> = sim.characters().iter().map(|c| c.position()).collect();
         run(&mut sim, &GamepadState::default(), 300);
@@ -200,7 +184,7 @@ fn the_pendulum_keeps_swinging() {
 #[test]
 fn what_diverges_is_put_right_and_the_rest_goes_on() {
     let pack = Arc::new(CharacterPack::from_bytes(assets::HUMANOID_PACK).unwrap());
-    let mut app = App::new(Simulation::new(pack, config(2)).unwrap(), PanelLayout::default());
+    let mut app = App::new(Simulation::new(pack, playground_config(2)).unwrap(), PanelLayout::default());
     for _ in 0..10 {
         app.tick();
     }
@@ -221,9 +205,9 @@ fn what_the_playground_is_not_for_is_refused_and_changes_nothing() {
     let mut sim = playground(2);
     run(&mut sim, &FORWARD, 5);
     for bad in [
-        SimConfig { engine: Engine::Rapier, ..config(2) },
-        SimConfig { ground: GroundKind::Wavy, ..config(2) },
-        SimConfig { characters: 50, ..config(2) },
+        SimConfig { engine: Engine::Rapier, ..playground_config(2) },
+        SimConfig { ground: GroundKind::Wavy, ..playground_config(2) },
+        SimConfig { characters: 50, ..playground_config(2) },
     ] {
         assert!(sim.rebuild(bad).is_err(), "{bad:?}");
     }

@@ -2,7 +2,7 @@
 
 mod common;
 
-use common::simulation;
+use common::{FORWARD, simulation};
 use image::{Rgba, RgbaImage};
 use physics::PhysicsCharacter as _;
 use physics_bridge::Settings;
@@ -11,14 +11,6 @@ use viewer::app::{App, PanelLayout, ViewerCommand};
 use viewer::recorder::{Kind, Recorder};
 use viewer::sim::{
     Engine, GhostKind, GroundKind, LEAST_FRICTION, LIE_SECS, SHOVE_BUTTON, SimConfig, SimError, Simulation,
-};
-
-const FORWARD: GamepadState = GamepadState {
-    left_stick: [0.0, 1.0],
-    right_stick: [0.0; 2],
-    left_trigger: 0.0,
-    right_trigger: 0.0,
-    buttons: policy_core::Buttons::NONE,
 };
 
 fn torso(sim: &Simulation) -> policy_core::BodyId {

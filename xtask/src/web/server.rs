@@ -1,6 +1,6 @@
 //! A static server for one folder, on this machine only: GET and HEAD, compressed, with cache headers.
 //!
-//! Names with a hash in them never change; `index.html` is asked for anew each time.
+//! Names with a hash in them never change; `index.html` is fetched again each time.
 
 use std::fs;
 use std::io::{self, BufRead as _, BufReader, Read as _, Write as _};

@@ -72,7 +72,7 @@ impl App {
         self.first_steps.observe(&doing, pack);
     }
 
-    /// Hands the second player's pad on, and tells who comes and goes. Replays and the tour know one player.
+    /// Hands the second player's pad on, and says when a second player joins or leaves. Replays and the tour know one player.
     pub(super) fn follow_second(&mut self) {
         let alone = !matches!(self.replaying, Replaying::Off) || self.tour.is_playing();
         let wanted = self.pad.second.filter(|_| !alone);

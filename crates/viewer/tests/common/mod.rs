@@ -11,11 +11,31 @@ use policy_core::format::{
     PACK_VERSION, PathEntry, PolicyEntry, SkeletonEntry, SkillEntry, Storage,
 };
 use policy_core::training::{ActionScaling, Layer, Normaliser, PackTensors};
-use policy_core::{CharacterPack, Mlp};
+use policy_core::{Buttons, CharacterPack, GamepadState, Mlp};
 use viewer::app::{App, PanelKind, PanelLayout, Preferences, Side};
 use viewer::assets;
 use viewer::gpu::Gpu;
-use viewer::sim::{SimConfig, Simulation};
+use viewer::sim::{SceneKind, SimConfig, Simulation};
+
+/// The stick ahead, and nothing else.
+pub const FORWARD: GamepadState = GamepadState {
+    left_stick: [0.0, 1.0],
+    right_stick: [0.0; 2],
+    left_trigger: 0.0,
+    right_trigger: 0.0,
+    buttons: Buttons::NONE,
+};
+
+/// A playground of so many characters that keeps its history.
+pub fn playground(characters: usize) -> Simulation {
+    let pack = Arc::new(CharacterPack::from_bytes(assets::HUMANOID_PACK).unwrap());
+    Simulation::new(pack, playground_config(characters)).unwrap()
+}
+
+/// What [`playground`] is made of.
+pub fn playground_config(characters: usize) -> SimConfig {
+    SimConfig { scene: SceneKind::Playground, characters, history: true, ..SimConfig::default() }
+}
 
 /// A world of one character that keeps its history.
 pub fn simulation() -> Simulation {
