@@ -6,7 +6,7 @@ use std::path::Path;
 
 use libfuzzer_sys::fuzz_target;
 use viewer::app::{PanelKind, PanelLayout};
-use viewer::playground::BestTime;
+use viewer::best_time::BestTime;
 
 fuzz_target!(|bytes: &[u8]| {
     let path = Path::new("best-playground.ron");

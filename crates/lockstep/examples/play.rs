@@ -6,7 +6,7 @@
 use std::process::ExitCode;
 
 use lockstep::{Arena, ArenaConfig};
-use replay::{Header, MOST_BYTES, Playback, Replay};
+use replay::{MOST_BYTES, Playback, Replay};
 
 fn main() -> ExitCode {
     let words: Vec<String> = std::env::args().skip(1).collect();
@@ -34,7 +34,7 @@ fn program(words: &[String]) -> Result<String, Box<dyn std::error::Error>> {
     } else {
         Replay::from_bytes(&std::fs::read(path)?)?
     };
-    let mut arena = Arena::new(&pack, config(replay.header())?)?;
+    let mut arena = Arena::new(&pack, ArenaConfig::of(replay.header())?)?;
     arena.header().expect(replay.header())?;
     let mut playback = Playback::new(&replay);
     while let Some(pads) = playback.next_pads() {
@@ -47,11 +47,4 @@ fn program(words: &[String]) -> Result<String, Box<dyn std::error::Error>> {
         arena.hash() == replay.last_hash(),
         arena.hash()
     ))
-}
-
-/// The arena that a header describes.
-fn config(header: &Header) -> Result<ArenaConfig, Box<dyn std::error::Error>> {
-    let crates = header.scene.strip_prefix("arena/").and_then(|count| count.parse().ok());
-    let crates = crates.ok_or_else(|| format!("expected the scene arena/CRATES, found {}", header.scene))?;
-    Ok(ArenaConfig { players: header.players.into(), crates, seed: header.seed })
 }

@@ -1,52 +1,35 @@
-//! The arena: flat ground, one character a player, crates between them.
+//! The arena: one character a player, others that wander, and what stands and lies about.
 
 use std::sync::Arc;
 
-use physics_rapier::{Model, PropShape, World};
-use policy_core::glam::{Quat, Vec2, Vec3};
+use physics_rapier::{Model, Motion, World};
+use playground::{PlacedProp, Playground, Race, WanderPath, Wanderer, swing_force};
+use policy_core::contract::Joint;
+use policy_core::glam::Vec2;
 use policy_core::{Button, CharacterPack, Heading};
-use replay::{Header, MOST_PLAYERS, Pad, StateHash};
+use replay::{Header, Pad, StateHash};
 
 use crate::error::ArenaError;
 use crate::player::{Player, PlayerView};
-
-/// Most crates.
-pub const MOST_CRATES: usize = 64;
+use crate::scene::{ArenaConfig, motion_of};
 
 /// Shoves every character, away from the camera of the player who presses it. That is also how a player falls to get up.
 pub const SHOVE_BUTTON: Button = Button::LeftShoulder;
-
-/// Distance between players at the start, metres.
-const SPACING_M: f32 = 1.6;
-/// Half the length of a crate, metres, and its mass.
-const CRATE_HALF_M: f32 = 0.2;
-const CRATE_KG: f32 = 5.0;
-
-/// What an arena is made of.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct ArenaConfig {
-    /// Characters, one a player: 1 to 8.
-    pub players: usize,
-    /// Crates that lie about, up to [`MOST_CRATES`].
-    pub crates: usize,
-    /// Places the crates.
-    pub seed: u32,
-}
-
-impl Default for ArenaConfig {
-    fn default() -> Self {
-        Self { players: 1, crates: 4, seed: 1 }
-    }
-}
 
 /// Several characters of one pack and props, stepped in fixed ticks by pads alone.
 #[derive(Debug)]
 pub struct Arena {
     config: ArenaConfig,
+    layout: Arc<Playground>,
+    wander_path: WanderPath,
     pack_hash: u64,
     pub(crate) pack: Arc<CharacterPack>,
     pub(crate) world: World,
+    /// Those with a pad, then those that wander.
     pub(crate) players: Vec<Player>,
+    pub(crate) wanderers: Vec<Wanderer>,
+    /// One for each player.
+    pub(crate) races: Vec<Race>,
     pub(crate) tick: u64,
     dt_secs: f32,
     /// For the bytes of a controller's state, while it is hashed.
@@ -59,32 +42,51 @@ impl Arena {
     /// # Errors
     /// When the bytes are no such pack, or a number of the configuration is out of its range.
     pub fn new(pack: &[u8], config: ArenaConfig) -> Result<Self, ArenaError> {
-        if !(1..=MOST_PLAYERS).contains(&config.players) {
-            return Err(ArenaError::Players { found: config.players });
-        }
-        if config.crates > MOST_CRATES {
-            return Err(ArenaError::Crates { found: config.crates });
-        }
+        let layout = config.layout()?;
         let pack_hash = StateHash::of(pack);
         let pack = Arc::new(CharacterPack::from_bytes(pack)?);
         let model = Model::for_pack(&pack)?;
         let mut world = World::new(&model);
-        let mut players = Vec::with_capacity(config.players);
-        for index in 0..config.players {
-            let start = start_of(index, config.players);
+        for painted in &layout.fixtures {
+            world.add_fixture(&painted.fixture)?;
+        }
+        let mut players = Vec::with_capacity(layout.starts.len());
+        for start in &layout.starts {
             let character = world.add_character()?;
-            world.stand_at(character, start.x, start.y, Heading::FORWARD, 0.0)?;
-            let mut player = Player::new(&pack, start);
+            let heading = Heading::from_angle(start.heading);
+            world.stand_at(character, start.at.x, start.at.y, heading, 0.0)?;
+            let mut player = Player::new(&pack, start.at, heading);
             world.sense_into(character, &mut player.state)?;
             player.stands();
             players.push(player);
         }
-        for index in 0..config.crates {
-            let at = crate_at(index, config.seed);
-            world.add_prop(PropShape::Box { half_extents: [CRATE_HALF_M; 3] }, CRATE_KG, at)?;
+        for placed in &layout.props {
+            let index = world.add_prop(&placed.prop, &motion_of(placed))?;
+            if let Some(joint) = &placed.joint {
+                world.join(index, None, joint)?;
+            }
         }
+        let wanderer = |(index, start): (usize, &playground::Start)| {
+            Wanderer::new(start.zone, start.heading, config.seed.into(), index as u64)
+        };
+        let wanderers = layout.starts.iter().enumerate().skip(config.players).map(wanderer).collect();
+        let wander_path = WanderPath::of(&pack);
+        let races = vec![Race::default(); config.players];
         let dt_secs = 1.0 / model.control_hz();
-        Ok(Self { config, pack_hash, pack, world, players, tick: 0, dt_secs, scratch: Vec::new() })
+        Ok(Self {
+            config,
+            layout,
+            wander_path,
+            pack_hash,
+            pack,
+            world,
+            players,
+            wanderers,
+            races,
+            tick: 0,
+            dt_secs,
+            scratch: Vec::new(),
+        })
     }
 
     /// What it was made of.
@@ -117,15 +119,37 @@ impl Arena {
         self.dt_secs
     }
 
-    /// What a player's character does; `None` when there is no such player.
+    /// What stands there.
+    #[must_use]
+    pub fn layout(&self) -> &Arc<Playground> {
+        &self.layout
+    }
+
+    /// A player's run over the course; `None` when there is no such player.
+    #[must_use]
+    pub fn race(&self, player: usize) -> Option<&Race> {
+        self.races.get(player)
+    }
+
+    /// Characters: the players and those that wander.
+    #[must_use]
+    pub fn character_count(&self) -> usize {
+        self.players.len()
+    }
+
+    /// What a character does; `None` when there is no such character. The first ones are the players'.
     #[must_use]
     pub fn player(&self, index: usize) -> Option<PlayerView<'_>> {
         self.players.get(index).map(Player::view)
     }
 
-    /// Shape, centre in metres and rotation of each crate.
-    pub fn crates(&self) -> impl Iterator<Item = (PropShape, Vec3, Quat)> + '_ {
-        (0..self.world.prop_count()).filter_map(|index| self.world.prop(index))
+    /// Each prop of the layout, and how it moves.
+    pub fn props(&self) -> impl Iterator<Item = (&PlacedProp, Motion)> + '_ {
+        self.layout
+            .props
+            .iter()
+            .enumerate()
+            .filter_map(|(index, placed)| Some((placed, self.world.prop(index)?.1)))
     }
 
     /// The header of a replay of this arena, with a hash a second.
@@ -136,7 +160,7 @@ impl Arena {
             seed: self.config.seed,
             hash_every: (1.0 / self.dt_secs).round() as u16,
             players: self.config.players as u8,
-            scene: format!("arena/{}", self.config.crates),
+            scene: self.config.scene.name(),
         }
     }
 
@@ -145,30 +169,58 @@ impl Arena {
     /// # Errors
     /// When there are more or fewer pads than players; the arena is then unchanged.
     pub fn tick(&mut self, pads: &[Pad]) -> Result<(), ArenaError> {
-        if pads.len() != self.players.len() {
-            return Err(ArenaError::Pads { expected: self.players.len(), found: pads.len() });
+        if pads.len() != self.config.players {
+            return Err(ArenaError::Pads { expected: self.config.players, found: pads.len() });
         }
         for (index, &pad) in pads.iter().enumerate() {
             if self.players[index].presses(pad, SHOVE_BUTTON) {
                 self.shove(pad.heading().direction())?;
             }
         }
-        for (index, (player, &pad)) in self.players.iter_mut().zip(pads).enumerate() {
-            let targets = player.decide(pad, self.dt_secs);
+        for (index, player) in self.players.iter_mut().enumerate() {
+            let targets = match pads.get(index) {
+                Some(&pad) => player.decide(pad, self.dt_secs),
+                None => {
+                    let at = player.state.root().position.truncate();
+                    let wish = self.wanderers[index - pads.len()].tick(at, self.dt_secs);
+                    player.follow(&self.wander_path.command(wish, at), self.dt_secs)
+                }
+            };
             self.world.actuate(index, targets)?;
         }
+        self.drive_swings()?;
         self.world.step();
         self.world.reset_lost_props();
         for (index, player) in self.players.iter_mut().enumerate() {
             self.world.sense_into(index, &mut player.state)?;
             if self.world.check(&player.state).is_err() || player.lies_for_good(self.dt_secs) {
-                let start = player.start;
-                self.world.stand_at(index, start.x, start.y, Heading::FORWARD, 0.0)?;
+                let (start, heading) = player.start;
+                self.world.stand_at(index, start.x, start.y, heading, 0.0)?;
                 self.world.sense_into(index, &mut player.state)?;
                 player.stood_up();
             }
         }
+        for (race, player) in self.races.iter_mut().zip(&self.players) {
+            let (at, down) = (player.state.root().position.truncate(), player.view().report.fallen);
+            race.tick(&self.layout.checkpoints, at, down);
+        }
         self.tick += 1;
+        Ok(())
+    }
+
+    /// Keeps pendulums at their height.
+    fn drive_swings(&mut self) -> Result<(), ArenaError> {
+        for (index, placed) in self.layout.props.iter().enumerate() {
+            let (Some(height), Some(Joint::Ball { anchor, .. } | Joint::Hinge { anchor, .. })) =
+                (placed.swing_m, placed.joint)
+            else {
+                continue;
+            };
+            let Some((_, Motion { position, velocity, .. })) = self.world.prop(index) else { continue };
+            if let Some(force) = swing_force(height, placed.prop.mass_kg, anchor, position, velocity) {
+                self.world.push_prop(index, force)?;
+            }
+        }
         Ok(())
     }
 
@@ -179,6 +231,9 @@ impl Arena {
         self.world.state_bits(|bits| hash.word(bits));
         for player in &mut self.players {
             player.hash_into(&mut hash, &mut self.scratch);
+        }
+        for wanderer in &self.wanderers {
+            wanderer.bits(|word| hash.word(word));
         }
         hash.value()
     }
@@ -194,21 +249,4 @@ impl Arena {
         }
         Ok(())
     }
-}
-
-/// Where a player starts: in a row across.
-fn start_of(index: usize, players: usize) -> Vec2 {
-    Vec2::new(0.0, (index as f32 - (players as f32 - 1.0) / 2.0) * SPACING_M)
-}
-
-/// Where a crate lies: in rows ahead of the players, each a little off.
-fn crate_at(index: usize, seed: u32) -> Vec3 {
-    let (row, column) = (index / 4, index % 4);
-    let mixed = (index as u32 ^ seed.wrapping_mul(0x9e37_79b9)).wrapping_mul(0x85eb_ca6b);
-    let off = |shift: u32| ((mixed >> shift) & 0xff) as f32 / 255.0 - 0.5;
-    Vec3::new(
-        3.0 + 1.5 * row as f32 + 0.8 * off(8),
-        (column as f32 - 1.5) * 1.2 + 0.6 * off(20),
-        CRATE_HALF_M,
-    )
 }

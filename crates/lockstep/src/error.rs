@@ -1,10 +1,11 @@
 //! Why an arena can't be made, stepped or restored.
 
 use physics_rapier::{ModelError, WorldError};
+use playground::SceneFileError;
 use policy_core::{PackError, StateError};
-use replay::{MOST_PLAYERS, ReplayError};
+use replay::ReplayError;
 
-use crate::arena::MOST_CRATES;
+use crate::scene::MOST_CRATES;
 
 /// Why an [`Arena`](crate::Arena) can't be made, stepped or restored. It is unchanged then.
 #[derive(Debug, thiserror::Error)]
@@ -20,8 +21,10 @@ pub enum ArenaError {
     #[error(transparent)]
     World(#[from] WorldError),
     /// Too many or too few players.
-    #[error("expected 1 to {MOST_PLAYERS} players, found {found}")]
+    #[error("expected 1 to {most} players, found {found}")]
     Players {
+        /// Most in this scene.
+        most: usize,
         /// What was asked for.
         found: usize,
     },
@@ -30,6 +33,17 @@ pub enum ArenaError {
     Crates {
         /// What was asked for.
         found: usize,
+    },
+    /// The playground can't be read.
+    #[error(transparent)]
+    Layout(#[from] SceneFileError),
+    /// A scene that no arena has.
+    #[error(
+        "expected a replay of the scene arena/CRATES or of the playground of this version, found {found:?}"
+    )]
+    Scene {
+        /// The name in the header.
+        found: String,
     },
     /// More or fewer pads than players.
     #[error("expected {expected} pads, one for each player, found {found}")]

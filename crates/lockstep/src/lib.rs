@@ -31,11 +31,13 @@ mod arena;
 mod error;
 mod player;
 mod saved;
+mod scene;
 mod script;
 
-pub use arena::{Arena, ArenaConfig, MOST_CRATES, SHOVE_BUTTON};
+pub use arena::{Arena, SHOVE_BUTTON};
 pub use error::ArenaError;
 pub use player::PlayerView;
 pub use replay::{Pad, StateHash};
 pub use saved::ArenaState;
+pub use scene::{ArenaConfig, ArenaScene, MOST_CRATES};
 pub use script::{SCRIPT_TICKS, Seen, script_pad};

@@ -4,8 +4,8 @@ use std::sync::Arc;
 
 use policy_core::glam::{Vec2, Vec3};
 use policy_core::{
-    Bindings, BodyId, Button, Buttons, CharacterPack, CharacterState, CommandMapper, Controller,
-    ControllerState, TickReport,
+    Bindings, BodyId, Button, Buttons, CharacterPack, CharacterState, Command, CommandMapper, Controller,
+    ControllerState, Heading, TickReport,
 };
 use replay::{Pad, StateHash};
 
@@ -35,7 +35,8 @@ pub(crate) struct Player {
     /// Room for the controller's state, while it is hashed or saved.
     saved: ControllerState,
     pub(crate) state: CharacterState,
-    pub(crate) start: Vec2,
+    /// Where it starts, metres, and where it looks there.
+    pub(crate) start: (Vec2, Heading),
     /// The pad of the last tick: buttons act when they go down.
     last_pad: Pad,
     /// How long it has lain without a skill to get up.
@@ -55,14 +56,14 @@ pub(crate) struct PlayerState {
 }
 
 impl Player {
-    pub(crate) fn new(pack: &Arc<CharacterPack>, start: Vec2) -> Self {
+    pub(crate) fn new(pack: &Arc<CharacterPack>, at: Vec2, heading: Heading) -> Self {
         let skeleton = pack.skeleton();
         Self {
             controller: Controller::new(Arc::clone(pack)),
             mapper: CommandMapper::new(pack, &Bindings::default()),
             saved: ControllerState::new(pack),
             state: CharacterState::new(skeleton),
-            start,
+            start: (at, heading),
             last_pad: Pad::default(),
             down_secs: 0.0,
             shoved: skeleton.head().and_then(|head| skeleton.parent(head)).unwrap_or(skeleton.root()),
@@ -90,6 +91,11 @@ impl Player {
         let command = self.mapper.map(&pad.state(), pad.heading(), &self.state);
         self.last_pad = pad;
         self.controller.tick(&self.state, &command, dt_secs)
+    }
+
+    /// The joint targets of a tick under a command of its own.
+    pub(crate) fn follow(&mut self, command: &Command, dt_secs: f32) -> &[f32] {
+        self.controller.tick(&self.state, command, dt_secs)
     }
 
     /// The push of a shove; `None` for a character that lies or flies.

@@ -1,16 +1,19 @@
 //! The whole state of an arena as a value.
 
 use physics_rapier::WorldSnapshot;
+use playground::{Race, Wanderer};
 
 use crate::arena::Arena;
 use crate::error::ArenaError;
 use crate::player::PlayerState;
 
-/// Physics, contacts, controllers and pads at the end of a tick.
+/// Physics, contacts, controllers, pads, wanderers and the clock of the course at the end of a tick.
 #[derive(Clone, Debug)]
 pub struct ArenaState {
     world: WorldSnapshot,
     players: Vec<PlayerState>,
+    wanderers: Vec<Wanderer>,
+    races: Vec<Race>,
     tick: u64,
 }
 
@@ -29,6 +32,8 @@ impl Arena {
         ArenaState {
             world: self.world.save(),
             players: self.players.iter().map(crate::player::Player::save).collect(),
+            wanderers: self.wanderers.clone(),
+            races: self.races.clone(),
             tick: self.tick,
         }
     }
@@ -39,6 +44,7 @@ impl Arena {
     /// When another arena saved the state; this one is then unchanged.
     pub fn restore(&mut self, state: &ArenaState) -> Result<(), ArenaError> {
         let fits = self.players.len() == state.players.len()
+            && self.races.len() == state.races.len()
             && self.players.iter().zip(&state.players).all(|(player, saved)| player.fits(saved));
         if !fits {
             return Err(ArenaError::State);
@@ -47,6 +53,8 @@ impl Arena {
         for (player, saved) in self.players.iter_mut().zip(&state.players) {
             player.restore(saved)?;
         }
+        self.wanderers.clone_from(&state.wanderers);
+        self.races.clone_from(&state.races);
         self.tick = state.tick;
         Ok(())
     }

@@ -1,7 +1,7 @@
 //! The same pads give the same state: again, after a restore, and in the order in which rollback asks for it.
 #![allow(missing_docs, reason = "tests")]
 
-use lockstep::{Arena, ArenaConfig, ArenaError, Pad, SCRIPT_TICKS, Seen, script_pad};
+use lockstep::{Arena, ArenaConfig, ArenaError, ArenaScene, Pad, SCRIPT_TICKS, Seen, script_pad};
 use replay::{Playback, Recorder, Replay};
 
 const PACK: &[u8] = include_bytes!("../../../assets/humanoid.pack.safetensors");
@@ -116,9 +116,91 @@ fn wrong_numbers_are_refused() {
     let made = |config| Arena::new(PACK, config).map(|_| ()).unwrap_err().to_string();
     assert_eq!(made(ArenaConfig { players: 0, ..config }), "expected 1 to 8 players, found 0");
     assert_eq!(made(ArenaConfig { players: 9, ..config }), "expected 1 to 8 players, found 9");
-    assert_eq!(made(ArenaConfig { crates: 65, ..config }), "expected at most 64 crates, found 65");
+    assert_eq!(
+        made(ArenaConfig { scene: ArenaScene::Flat { crates: 65 }, ..config }),
+        "expected at most 64 crates, found 65"
+    );
     assert!(matches!(Arena::new(b"no pack", config), Err(ArenaError::Pack(_))));
     let mut two = arena(2);
     assert!(matches!(two.tick(&[Pad::default()]), Err(ArenaError::Pads { expected: 2, found: 1 })));
     assert!(matches!(two.restore(&arena(1).save()), Err(ArenaError::State)));
+}
+
+fn playground(players: usize) -> Arena {
+    Arena::new(PACK, ArenaConfig { players, scene: ArenaScene::Playground, seed: 3 }).unwrap()
+}
+
+#[test]
+fn in_the_playground_the_others_wander_and_the_pendulum_keeps_its_height() {
+    let mut arena = playground(1);
+    assert!(arena.character_count() >= 4, "{}", arena.character_count());
+    let index = arena.layout().props.iter().position(|prop| prop.swing_m.is_some()).expect("a pendulum");
+    let swing = arena.layout().props[index].swing_m.unwrap();
+    let (mut ways, mut heights) = (vec![0.0; arena.character_count()], Vec::new());
+    for tick in 0..450 {
+        arena.tick(&[Pad::default()]).unwrap();
+        for (index, way) in ways.iter_mut().enumerate() {
+            let velocity = arena.player(index).unwrap().state.root().linear_velocity;
+            *way += velocity.truncate().length() * arena.tick_secs();
+        }
+        if tick > 300 {
+            heights.push(arena.props().nth(index).unwrap().1.position.z);
+        }
+    }
+    assert!(ways[1..].iter().filter(|way| **way > 2.0).count() >= 2, "{ways:?}");
+    let span = |heights: &[f32]| {
+        heights.iter().fold(f32::MIN, |a, b| a.max(*b)) - heights.iter().fold(f32::MAX, |a, b| a.min(*b))
+    };
+    assert!(span(&heights) > 0.6 * swing, "it swings by {} of {swing} m", span(&heights));
+}
+
+#[test]
+fn the_playground_goes_back_to_what_was_saved() {
+    let mut arena = playground(2);
+    let pads = |tick: u32| [script_pad(tick, 0), script_pad(tick, 1)];
+    (0..60).for_each(|tick| arena.tick(&pads(tick)).unwrap());
+    let saved = arena.save();
+    let run = |arena: &mut Arena| {
+        (60..120).for_each(|tick| arena.tick(&pads(tick)).unwrap());
+        arena.hash()
+    };
+    let expected = run(&mut arena);
+    arena.restore(&saved).unwrap();
+    assert_eq!(run(&mut arena), expected);
+    assert!(playground(1).restore(&saved).is_err(), "of two players");
+}
+
+#[test]
+fn a_header_names_the_scene_and_another_is_refused() {
+    for scene in [ArenaScene::Flat { crates: 7 }, ArenaScene::Playground] {
+        let config = ArenaConfig { players: 2, scene, seed: 5 };
+        let header = Arena::new(PACK, config).unwrap().header();
+        header.check().unwrap();
+        assert_eq!(ArenaConfig::of(&header).unwrap(), config);
+    }
+    let mut header = playground(1).header();
+    header.scene = "playground/0123456789abcdef".into();
+    let said = ArenaConfig::of(&header).unwrap_err().to_string();
+    assert!(said.contains("playground of this version, found \"playground/0123"), "{said}");
+    let full = ArenaConfig { players: 8, scene: ArenaScene::Playground, seed: 1 };
+    let most = playground(1).layout().starts.len();
+    let expected = format!("expected 1 to {most} players, found 8");
+    assert_eq!(Arena::new(PACK, full).unwrap_err().to_string(), expected);
+}
+
+#[test]
+fn the_first_checkpoint_starts_the_clock() {
+    let mut arena = playground(1);
+    let first = arena.layout().checkpoints[0];
+    let start = arena.layout().starts[0].at;
+    let towards = policy_core::Heading::from_direction(first.at - start);
+    let pad =
+        Pad::from_state(&policy_core::GamepadState { left_stick: [0.0, 1.0], ..Default::default() }, towards);
+    for _ in 0..300 {
+        arena.tick(&[pad]).unwrap();
+        if arena.race(0).unwrap().state() == playground::RaceState::Running {
+            return;
+        }
+    }
+    panic!("{:?} at {}", arena.race(0), arena.player(0).unwrap().state.root().position);
 }

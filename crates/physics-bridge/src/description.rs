@@ -3,16 +3,13 @@
 
 pub(crate) mod body_poses;
 pub(crate) mod file;
-pub(crate) mod fixture;
 pub(crate) mod ground;
 pub(crate) mod ground_kind;
-pub(crate) mod joint;
 pub(crate) mod layout;
 mod logging;
 pub(crate) mod mjcf;
 pub(crate) mod model;
 pub(crate) mod model_error;
-pub(crate) mod prop;
 pub(crate) mod settings;
 pub(crate) mod shape;
 mod skeleton;

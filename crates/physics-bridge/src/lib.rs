@@ -51,21 +51,18 @@ pub use character::{
 };
 pub use crowd::{Crowd, CrowdError, Worlds};
 pub use description::body_poses::BodyPoses;
-pub use description::fixture::{Fixture, FixtureShape, MAX_HEIGHTS, MAX_TRIANGLES, TRIANGLE_DEPTH_M};
 pub use description::ground_kind::GroundKind;
-pub use description::joint::{DAMPING_RANGE, Joint, ROPE_RANGE_M};
 pub use description::model::Model;
 pub use description::model_error::ModelError;
-pub use description::prop::{
-    FRICTION_RANGE, MASS_RANGE_KG, MAX_HULL_POINTS, Motion, Prop, SIZE_RANGE_M, Solid,
-};
 pub use description::shape::{Shape, ShapeKind};
 pub use description::terrain::Terrain;
 pub use description::world_error::WorldError;
 /// What policy-core says of every physics of a character.
 pub use policy_core::contract::{
-    CONTROL_HZ, HeightField, MAX_DEPTH_M, MAX_DISTANCE_M, MAX_PUSHED_MPS, MAX_SPEED_MPS, MAX_SPIN_RADPS,
-    PhysicsCharacter, Pose, PoseError, PushError, SettingError, Settings, WALKING_START_MPS,
+    CONTROL_HZ, DAMPING_RANGE, DescriptionError, FRICTION_RANGE, Fixture, FixtureShape, HeightField, Joint,
+    MASS_RANGE_KG, MAX_DEPTH_M, MAX_DISTANCE_M, MAX_HEIGHTS, MAX_HULL_POINTS, MAX_PUSHED_MPS, MAX_SPEED_MPS,
+    MAX_SPIN_RADPS, MAX_TRIANGLES, Motion, PhysicsCharacter, Pose, PoseError, Prop, PushError, ROPE_RANGE_M,
+    SIZE_RANGE_M, SettingError, Settings, Solid, TRIANGLE_DEPTH_M, WALKING_START_MPS,
 };
 pub use ring::NotRecorded;
 pub use world::{

@@ -62,9 +62,10 @@ pub use model::Model;
 pub use model_error::ModelError;
 /// What policy-core says of every physics of a character.
 pub use policy_core::contract::{
-    CONTROL_HZ, HeightField, MAX_DEPTH_M, MAX_DISTANCE_M, MAX_PUSHED_MPS, MAX_SPEED_MPS, MAX_SPIN_RADPS,
-    PhysicsCharacter, Pose, PoseError, PushError, SettingError, Settings, WALKING_START_MPS,
+    CONTROL_HZ, DescriptionError, Fixture, FixtureShape, HeightField, Joint, MAX_DEPTH_M, MAX_DISTANCE_M,
+    MAX_PUSHED_MPS, MAX_SPEED_MPS, MAX_SPIN_RADPS, Motion, PhysicsCharacter, Pose, PoseError, Prop,
+    PushError, SettingError, Settings, Solid, WALKING_START_MPS,
 };
 /// Rapier as this crate uses it.
 pub use rapier3d;
-pub use world::{PropShape, World, WorldError, WorldSnapshot};
+pub use world::{World, WorldError, WorldSnapshot};

@@ -1,16 +1,20 @@
-//! Several characters and props in one world: they touch each other.
+//! Several characters, props and fixtures in one world: they touch each other.
 //!
 //! Its characters are driven by [`Drive::Torques`] at the physics rate of their model. It decides nothing: who plays
 //! puts back what diverged.
 
+mod fixture;
+mod joint;
 mod prop;
 mod save;
+mod shape;
 
-use policy_core::contract::{Pose, PoseError, PushError};
+use policy_core::contract::{Pose, PoseError, PushError, Solid};
 use policy_core::glam::Vec3;
 use policy_core::{BodyId, CharacterState, Heading};
 use rapier3d::dynamics::RigidBodyHandle;
 use rapier3d::geometry::InteractionGroups;
+use rapier3d::math::Pose as Place;
 use rapier3d::pipeline::PhysicsWorld;
 
 use crate::articulation::{Articulation, Drive, PlaceError, Sets};
@@ -18,29 +22,29 @@ use crate::character::push::Pushes;
 use crate::character::{Diverged, empty_world, sense_into};
 use crate::model::Model;
 
-pub use self::prop::PropShape;
+use self::fixture::Standing;
 pub use self::save::{WorldError, WorldSnapshot};
 
-/// Most characters or props.
+/// Most characters, props, fixtures or joints.
 const MOST: usize = 256;
 
 /// Why a character can't lose a part here: the sets are only read from outside.
 const WHOLE: &str = "the parts of a character stay in its world";
 
-/// Characters of one model and props on the ground of that model. Characters and props have indices in the order in
+/// Characters of one model, props and fixtures on the ground of that model. Characters and props have indices in the order in
 /// which they were added; nothing is taken out.
 ///
 /// ```
 /// # fn main() -> Result<(), Box<dyn std::error::Error>> {
 /// # const HUMANOID: &str = include_str!(concat!(env!("CARGO_MANIFEST_DIR"), "/../../assets/humanoid.xml"));
-/// use physics_rapier::{Model, PropShape, World};
+/// use physics_rapier::{Model, Motion, Prop, World};
 /// use policy_core::{Heading, glam::Vec3};
 ///
 /// let mut world = World::new(&Model::from_mjcf(HUMANOID)?);
 /// let one = world.add_character()?;
 /// let other = world.add_character()?;
 /// world.stand_at(other, 2.0, 0.0, Heading::from_angle(3.1), 0.0)?;
-/// world.add_prop(PropShape::Box { half_extents: [0.2; 3] }, 5.0, Vec3::new(1.0, 1.0, 0.2))?;
+/// world.add_prop(&Prop::cube(0.4, 5.0), &Motion::at(Vec3::new(1.0, 1.0, 0.2)))?;
 /// let before = world.save();
 /// world.step();
 /// world.restore(&before)?;
@@ -52,7 +56,12 @@ pub struct World {
     model: Model,
     world: PhysicsWorld,
     residents: Vec<Resident>,
-    props: Vec<Prop>,
+    props: Vec<PropBody>,
+    fixtures: Vec<Standing>,
+    /// The fixed body that holds what is joined to the world.
+    pillar: Option<RigidBodyHandle>,
+    /// Joints of props. Characters have joints of their own.
+    joints: usize,
     tick: u64,
     /// What was sensed of a pushed character.
     sensed: CharacterState,
@@ -65,12 +74,12 @@ struct Resident {
     pushes: Pushes,
 }
 
-/// A prop in the world, and where it began, metres.
+/// A prop in the world, and where it began.
 #[derive(Clone)]
-struct Prop {
+struct PropBody {
     body: RigidBodyHandle,
-    shape: PropShape,
-    start: Vec3,
+    solid: Solid,
+    start: Place,
 }
 
 impl World {
@@ -83,6 +92,9 @@ impl World {
             model: model.clone(),
             residents: Vec::new(),
             props: Vec::new(),
+            fixtures: Vec::new(),
+            pillar: None,
+            joints: 0,
             tick: 0,
         }
     }
@@ -149,12 +161,13 @@ impl World {
         Ok(())
     }
 
-    /// Writes what a policy senses of a character. Allocates only when `out` was made for another skeleton.
+    /// Writes what a policy senses of a character. The ground is what is highest below its root. Allocates only when `out` was made for another skeleton.
     ///
     /// # Errors
     /// When there is no such character.
     pub fn sense_into(&self, character: usize, out: &mut CharacterState) -> Result<(), WorldError> {
         sense_into(&self.world, &self.resident(character)?.articulation, out);
+        out.ground_height = self.ground_below(out.root().position);
         Ok(())
     }
 

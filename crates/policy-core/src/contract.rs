@@ -1,21 +1,31 @@
-//! What every physics of a character has in common: poses, pushes, settings, uneven ground, the control rate, and limits
-//! of plausible motion. [`PhysicsCharacter`] is one character, whatever the engine.
+//! What every physics of a character has in common: poses, pushes, settings, uneven ground, props, fixtures and joints,
+//! the control rate, and limits of plausible motion. [`PhysicsCharacter`] is one character, whatever the engine.
 //!
 //! The physics crates of this project export these names. An engine of your own can use them to behave alike.
 
+mod description_error;
+mod fixture;
 mod height_field;
+mod joint;
 mod physics_character;
 mod pose;
+mod prop;
 mod push;
 mod settings;
+mod solid;
 
+pub use description_error::DescriptionError;
+pub use fixture::{Fixture, FixtureShape, MAX_HEIGHTS, MAX_TRIANGLES, TRIANGLE_DEPTH_M};
 pub use height_field::{HeightField, HeightFieldError};
+pub use joint::{DAMPING_RANGE, Joint, ROPE_RANGE_M};
 pub use physics_character::PhysicsCharacter;
 pub use pose::{Pose, PoseError, ROOT_QPOS, ROOT_QVEL};
+pub use prop::{FRICTION_RANGE, MASS_RANGE_KG, Motion, Prop};
 pub use push::{
     MAX_FORCE_N, MAX_IMPULSE_NS, MAX_PUSH_SECS, MAX_PUSHED_MPS, PushError, check_impulse, check_push,
 };
 pub use settings::{SettingError, Settings};
+pub use solid::{MAX_HULL_POINTS, SIZE_RANGE_M, Solid};
 
 /// Control ticks per second, unless a pack says otherwise.
 pub const CONTROL_HZ: u32 = 30;

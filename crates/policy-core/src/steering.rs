@@ -47,7 +47,7 @@ impl Default for Steering {
 
 /// What steering remembers from tick to tick.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub(crate) struct SteeringState {
+pub struct SteeringState {
     /// Low-passed horizontal velocity of the root, world, metres per second.
     pub(crate) velocity: Vec2,
     /// Angle that is added against drift, radians.
@@ -57,13 +57,7 @@ pub(crate) struct SteeringState {
 impl Steering {
     /// The target turned about the root so that the course goes to where it lies.
     #[must_use]
-    pub(crate) fn adjusted(
-        self,
-        memory: &mut SteeringState,
-        state: &CharacterState,
-        target: Vec2,
-        dt: f32,
-    ) -> Vec2 {
+    pub fn adjusted(self, memory: &mut SteeringState, state: &CharacterState, target: Vec2, dt: f32) -> Vec2 {
         let root = state.root();
         let now = root.linear_velocity.truncate();
         let share = if self.velocity_secs > 0.0 { (dt / self.velocity_secs).min(1.0) } else { 1.0 };

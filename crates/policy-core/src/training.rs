@@ -16,3 +16,4 @@ pub use crate::path::Path;
 pub use crate::route::RouteTable;
 pub use crate::skeleton::{MAX_SKELETON_PARTS, Roles, SkeletonBody, SkeletonError, SkeletonJoint};
 pub use crate::skill::{EndCondition, SkillProgress};
+pub use crate::steering::SteeringState;

@@ -4,8 +4,8 @@
 use std::sync::Arc;
 
 use glam::Vec2;
+use playground::RaceState;
 use policy_core::{CharacterPack, GamepadState, Heading};
-use viewer::playground::RaceState;
 use viewer::sim::{SceneKind, SimConfig, Simulation};
 
 /// The way: x, y, left trigger, right trigger, each to within so many metres.

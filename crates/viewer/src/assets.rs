@@ -9,6 +9,3 @@ pub const HUMANOID_GLB: &[u8] =
 /// The character pack.
 pub const HUMANOID_PACK: &[u8] =
     include_bytes!(concat!(env!("CARGO_MANIFEST_DIR"), "/../../assets/humanoid.pack.safetensors"));
-/// The scene of the playground.
-pub const PLAYGROUND: &str =
-    include_str!(concat!(env!("CARGO_MANIFEST_DIR"), "/../../assets/scenes/playground.ron"));

@@ -11,6 +11,8 @@ pub mod app;
 pub mod appearance;
 #[cfg(feature = "native")]
 pub mod assets;
+#[cfg(feature = "native")]
+pub mod best_time;
 pub mod camera;
 #[cfg(feature = "native")]
 pub mod cli;
@@ -29,8 +31,6 @@ pub mod overlay;
 pub mod pads;
 #[cfg(feature = "native")]
 mod panels;
-#[cfg(feature = "native")]
-pub mod playground;
 #[cfg(feature = "native")]
 pub mod pose_clip;
 #[cfg(feature = "native")]

@@ -9,10 +9,11 @@ use common::{FORWARD, playground, playground_config};
 use egui_kittest::Harness;
 use glam::{Vec2, Vec3};
 use physics_bridge::{Motion, PropHandle};
+use playground::RaceState;
 use policy_core::{Buttons, CharacterPack, GamepadState, Heading};
 use viewer::app::{App, Best, PanelLayout, ViewerCommand};
 use viewer::assets;
-use viewer::playground::{BestTime, RaceState};
+use viewer::best_time::BestTime;
 use viewer::sim::{
     Engine, GhostKind, GroundKind, Held, LooseKind, MOST_BALLS, SPAWN_BUTTON, SceneKind, SharedWorld,
     SimConfig, SimError, Simulation, THROW_BUTTON,

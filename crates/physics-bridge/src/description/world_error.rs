@@ -1,6 +1,6 @@
 //! Why a world can't be changed as asked.
 
-use policy_core::contract::{PoseError, PushError};
+use policy_core::contract::{DescriptionError, PoseError, PushError};
 
 use super::file::quoted;
 use super::model_error::ModelError;
@@ -12,7 +12,7 @@ pub enum WorldError {
     /// A number is out of its range, or not a number.
     #[error("expected {field} of {what} between {least} and {most}, found {found}")]
     Range {
-        /// `a prop`, `a fixture`, `a joint`, `a character`, `a grab` or `a ray`.
+        /// `a character`, `a grab` or `a ray`, for instance.
         what: &'static str,
         /// Name of the field.
         field: &'static str,
@@ -28,40 +28,6 @@ pub enum WorldError {
     Stale {
         /// `a prop`, `a fixture`, `a joint`, `a character` or `a grab`.
         what: &'static str,
-    },
-    /// The corners of a mesh enclose nothing.
-    #[error("expected corners of a hull that are not in one plane, found a thickness of {thickness_m} m")]
-    Flat {
-        /// The least extent, metres.
-        thickness_m: f32,
-    },
-    /// A triangle names a corner that does not exist.
-    #[error("expected triangle {triangle} to name corners below {corners}, found {found}")]
-    Corner {
-        /// Index of the triangle.
-        triangle: usize,
-        /// Number of corners.
-        corners: usize,
-        /// Found.
-        found: u32,
-    },
-    /// A triangle has no area.
-    #[error("expected triangle {triangle} to have an area of at least {least_m2} m2, found {found_m2}")]
-    Sliver {
-        /// Index of the triangle.
-        triangle: usize,
-        /// Least area, square metres.
-        least_m2: f32,
-        /// Found.
-        found_m2: f32,
-    },
-    /// The height field has another number of heights than of points.
-    #[error("expected {expected} heights, found {found}")]
-    Heights {
-        /// Rows times columns.
-        expected: usize,
-        /// Given.
-        found: usize,
     },
     /// Too many of something.
     #[error("expected at most {most} {what}, found more")]
@@ -111,6 +77,9 @@ pub enum WorldError {
     /// A push that is out of its limits.
     #[error(transparent)]
     Push(#[from] PushError),
+    /// A prop, fixture or joint that can't be as described.
+    #[error(transparent)]
+    Description(#[from] DescriptionError),
     /// A character's model can't be loaded.
     #[error(transparent)]
     Model(#[from] ModelError),

@@ -7,11 +7,11 @@ use super::World;
 use super::handle::{CharacterHandle, FixtureHandle, JointHandle, PropHandle};
 use super::scene::{JointRecord, PropRecord, Rope, Scene};
 use super::stand::check_stand;
-use crate::description::fixture::Fixture;
-use crate::description::joint::Joint;
 use crate::description::model::Model;
-use crate::description::prop::{Motion, Prop};
 use crate::description::world_error::WorldError;
+use policy_core::contract::Fixture;
+use policy_core::contract::Joint;
+use policy_core::contract::{Motion, Prop};
 
 /// Most characters in a world.
 const MOST_CHARACTERS: usize = 1024;

@@ -3,11 +3,11 @@
 use std::hash::{Hash, Hasher};
 use std::marker::PhantomData;
 
-use crate::description::fixture::Fixture;
-use crate::description::joint::Joint;
 use crate::description::model::Model;
-use crate::description::prop::Prop;
 use crate::description::world_error::WorldError;
+use policy_core::contract::Fixture;
+use policy_core::contract::Joint;
+use policy_core::contract::Prop;
 
 /// Names one thing in a [`World`](crate::World). `K` is what it was made of.
 pub struct Handle<K> {

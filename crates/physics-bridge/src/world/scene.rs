@@ -4,10 +4,10 @@
 use glam::{DQuat, DVec3};
 
 use super::handle::Slots;
-use crate::description::fixture::Fixture;
-use crate::description::joint::Joint;
 use crate::description::model::Model;
-use crate::description::prop::Prop;
+use policy_core::contract::Fixture;
+use policy_core::contract::Joint;
+use policy_core::contract::Prop;
 
 /// Everything in a world.
 #[derive(Clone, Debug)]

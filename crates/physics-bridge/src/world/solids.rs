@@ -8,8 +8,8 @@ use mujoco_rs::wrappers::mj_model::{MjtGeomBase, MjtJoint};
 use super::build::EVERYTHING;
 use super::places::{fixture_name, prop_name, rope_name};
 use super::scene::{Hold, HoldKind, JointRecord, PropRecord, Rope, Scene};
-use crate::description::fixture::{Fixture, FixtureShape, TRIANGLE_DEPTH_M};
-use crate::description::prop::{Prop, Solid};
+use policy_core::contract::{Fixture, FixtureShape, TRIANGLE_DEPTH_M};
+use policy_core::contract::{Prop, Solid};
 
 /// How fast a free prop slows down by itself, 1/s: enough that a ball on a plane comes to rest.
 const DRAG: f64 = 0.005;

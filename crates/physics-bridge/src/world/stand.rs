@@ -10,10 +10,10 @@ use super::handle::{CharacterHandle, FixtureHandle, JointHandle, PropHandle};
 use super::recover::Standing;
 use super::scene::JointRecord;
 use super::solids::{quat, vec3, wxyz};
-use crate::description::fixture::Fixture;
-use crate::description::prop::{Motion, Prop};
 use crate::description::world_error::{WorldError, within};
 use crate::kinematics::velocity_at;
+use policy_core::contract::Fixture;
+use policy_core::contract::{Motion, Prop};
 
 impl World {
     /// What a prop was made of.

@@ -1,71 +1,39 @@
-//! Props of a world: boxes and balls that characters kick and carry along.
+//! Props of a world: what characters kick, open and carry along.
 
-use policy_core::contract::{MAX_DEPTH_M, MAX_DISTANCE_M, MAX_SPEED_MPS};
-use policy_core::glam::{Quat, Vec3};
-use rapier3d::dynamics::RigidBodyBuilder;
-use rapier3d::geometry::ColliderBuilder;
+use policy_core::contract::{MAX_DEPTH_M, MAX_DISTANCE_M, MAX_SPEED_MPS, Motion, Prop, Solid};
+use policy_core::glam::Vec3;
+use rapier3d::dynamics::{CoefficientCombineRule, RigidBodyBuilder, RigidBodyHandle};
 use rapier3d::math::Pose;
 
-use super::{MOST, Prop, World, WorldError};
-
-/// Smallest and largest half extent or radius, metres.
-const SIZES_M: std::ops::RangeInclusive<f32> = 0.01..=50.0;
-/// Least and most mass, kilograms.
-const MASSES_KG: std::ops::RangeInclusive<f32> = 0.01..=10_000.0;
-/// Friction of props.
-const FRICTION: f32 = 0.6;
-
-/// Shape of a prop.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum PropShape {
-    /// A box.
-    Box {
-        /// Half its lengths along x, y and z, metres.
-        half_extents: [f32; 3],
-    },
-    /// A ball.
-    Ball {
-        /// Metres.
-        radius: f32,
-    },
-}
+use super::shape::{of_solid, rough};
+use super::{MOST, PropBody, World, WorldError};
 
 impl World {
-    /// Adds a prop at rest with its centre at a point, metres, and returns its index. Allocates.
+    /// Adds a prop and returns its index. Allocates.
     ///
     /// # Errors
-    /// When a length is not in [0.01, 50] m, the mass not in [0.01, 10,000] kg, the point not finite, or the world has as
-    /// many props as it may have.
-    pub fn add_prop(&mut self, shape: PropShape, mass_kg: f32, at: Vec3) -> Result<usize, WorldError> {
+    /// When a number of it or of its motion is out of its range, or the world has as many props as it may have.
+    pub fn add_prop(&mut self, prop: &Prop, motion: &Motion) -> Result<usize, WorldError> {
+        prop.check()?;
+        motion.check()?;
         if self.props.len() >= MOST {
             return Err(WorldError::Full { what: "props", most: MOST });
         }
-        let within = |expected, found: f32, holds: bool| {
-            if holds { Ok(()) } else { Err(WorldError::Prop { expected, found }) }
-        };
-        within("a mass of 0.01 to 10000 kg", mass_kg, MASSES_KG.contains(&mass_kg))?;
-        let far = at.abs().max_element();
-        within("a place within 1000 m of the origin", far, at.is_finite() && far <= 1000.0)?;
-        let size = "lengths of 0.01 to 50 m";
-        let collider = match shape {
-            PropShape::Box { half_extents } => {
-                for half in half_extents {
-                    within(size, half, SIZES_M.contains(&half))?;
-                }
-                let [x, y, z] = half_extents;
-                ColliderBuilder::cuboid(x, y, z)
-            }
-            PropShape::Ball { radius } => {
-                within(size, radius, SIZES_M.contains(&radius))?;
-                ColliderBuilder::ball(radius)
-            }
-        };
-        let world = &mut self.world;
+        let start = Pose::from_parts(motion.position, motion.rotation);
+        let collider = rough(of_solid(&prop.solid)?, prop.friction)
+            .mass(prop.mass_kg)
+            .restitution(prop.bounce)
+            .restitution_combine_rule(CoefficientCombineRule::Max);
         // A prop that slept would wake at other ticks after a restore than before it.
-        let body = world.bodies.insert(RigidBodyBuilder::dynamic().translation(at).can_sleep(false));
-        let collider = collider.mass(mass_kg).friction(FRICTION);
+        let body = RigidBodyBuilder::dynamic()
+            .pose(start)
+            .linvel(motion.velocity)
+            .angvel(motion.spin)
+            .can_sleep(false);
+        let world = &mut self.world;
+        let body = world.bodies.insert(body);
         world.colliders.insert_with_parent(collider, body, &mut world.bodies);
-        self.props.push(Prop { body, shape, start: at });
+        self.props.push(PropBody { body, solid: prop.solid.clone(), start });
         Ok(self.props.len() - 1)
     }
 
@@ -75,12 +43,33 @@ impl World {
         self.props.len()
     }
 
-    /// Shape, centre in metres and rotation of a prop; `None` when there is no such prop.
+    /// Shape of a prop, and how it moves; `None` when there is no such prop.
     #[must_use]
-    pub fn prop(&self, index: usize) -> Option<(PropShape, Vec3, Quat)> {
+    pub fn prop(&self, index: usize) -> Option<(&Solid, Motion)> {
         let prop = self.props.get(index)?;
-        let pose = self.world.bodies[prop.body].position();
-        Some((prop.shape, pose.translation, pose.rotation))
+        let body = &self.world.bodies[prop.body];
+        let Pose { translation: position, rotation, .. } = *body.position();
+        Some((&prop.solid, Motion { position, rotation, velocity: body.linvel(), spin: body.angvel() }))
+    }
+
+    /// Pushes a prop at its centre: as much as a force would over a tick. Newtons, world space.
+    ///
+    /// # Errors
+    /// When there is no such prop, or the force is not finite.
+    pub fn push_prop(&mut self, index: usize, force: Vec3) -> Result<(), WorldError> {
+        let body = self.prop_body(index)?;
+        if !force.is_finite() {
+            return Err(WorldError::Force { found: force });
+        }
+        let secs = 1.0 / self.model.control_hz();
+        self.world.bodies[body].apply_impulse(force * secs, true);
+        Ok(())
+    }
+
+    pub(super) fn prop_body(&self, index: usize) -> Result<RigidBodyHandle, WorldError> {
+        let found = self.props.len();
+        let prop = self.props.get(index);
+        prop.map(|prop| prop.body).ok_or(WorldError::Missing { what: "prop", index, found })
     }
 
     /// Puts every prop that moves implausibly back to where it began, at rest. Returns how many.
@@ -96,7 +85,7 @@ impl World {
                 && at.z >= -MAX_DEPTH_M
                 && velocity.length() <= MAX_SPEED_MPS;
             if !sound {
-                body.set_position(Pose::from_translation(prop.start), true);
+                body.set_position(prop.start, true);
                 body.set_linvel(Vec3::ZERO, true);
                 body.set_angvel(Vec3::ZERO, true);
                 reset += 1;

@@ -1,9 +1,12 @@
 //! A world's state as a value, and as bits to compare.
 
-use policy_core::contract::{PoseError, PushError};
+use policy_core::contract::{DescriptionError, PoseError, PushError};
+use policy_core::glam::Vec3;
 use rapier3d::dynamics::JointAxis;
 
-use super::{Prop, Resident, World};
+use rapier3d::dynamics::RigidBodyHandle;
+
+use super::{PropBody, Resident, Standing, World};
 use crate::model::Model;
 use crate::saved::SavedSets;
 
@@ -14,7 +17,7 @@ pub enum WorldError {
     /// There is no such character.
     #[error("expected the index of one of {found} {what}s, found {index}")]
     Missing {
-        /// `character`.
+        /// `character` or `prop`.
         what: &'static str,
         /// The index.
         index: usize,
@@ -24,18 +27,25 @@ pub enum WorldError {
     /// The world is full.
     #[error("expected at most {most} {what}, found one more")]
     Full {
-        /// `characters` or `props`.
+        /// `characters`, `props`, `fixtures` or `joints`.
         what: &'static str,
         /// Most of them.
         most: usize,
     },
-    /// A number of a prop.
-    #[error("expected {expected} for a prop, found {found}")]
-    Prop {
-        /// What it should be.
-        expected: &'static str,
-        /// What it is.
-        found: f32,
+    /// A prop, fixture or joint that can't be as described.
+    #[error(transparent)]
+    Description(#[from] DescriptionError),
+    /// Corners or triangles that make no body.
+    #[error("expected corners that enclose a body, found some that do not")]
+    Hull,
+    /// A joint of a prop with itself.
+    #[error("expected two props to join, found one twice")]
+    Loop,
+    /// A force on a prop that is no number.
+    #[error("expected a finite force, found {found}")]
+    Force {
+        /// The force.
+        found: Vec3,
     },
     /// A place that no character can take.
     #[error(transparent)]
@@ -54,7 +64,10 @@ pub struct WorldSnapshot {
     model: Model,
     sets: SavedSets,
     residents: Vec<Resident>,
-    props: Vec<Prop>,
+    props: Vec<PropBody>,
+    fixtures: Vec<Standing>,
+    pillar: Option<RigidBodyHandle>,
+    joints: usize,
     tick: u64,
 }
 
@@ -67,6 +80,9 @@ impl World {
             sets: SavedSets::of(&self.world),
             residents: self.residents.clone(),
             props: self.props.clone(),
+            fixtures: self.fixtures.clone(),
+            pillar: self.pillar,
+            joints: self.joints,
             tick: self.tick,
         }
     }
@@ -79,9 +95,11 @@ impl World {
         if !snapshot.model.is(&self.model) {
             return Err(WorldError::Snapshot);
         }
-        let WorldSnapshot { model: _, sets, residents, props, tick } = snapshot.clone();
+        let WorldSnapshot { model: _, sets, residents, props, fixtures, pillar, joints, tick } =
+            snapshot.clone();
         sets.restore(&mut self.world);
         (self.residents, self.props, self.tick) = (residents, props, tick);
+        (self.fixtures, self.pillar, self.joints) = (fixtures, pillar, joints);
         Ok(())
     }
 

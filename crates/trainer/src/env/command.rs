@@ -2,13 +2,14 @@
 
 use glam::Vec2;
 use physics_bridge::CONTROL_HZ;
-use policy_core::training::{FallDetector, Heights, RISE_SECONDS, TARGET_RANGE_METRES, fall_height};
-use policy_core::{GraphPosition, NodeId, PathId};
+use policy_core::training::{FallDetector, Heights, RISE_SECONDS, SteeringState, fall_height};
+use policy_core::{CharacterState, GraphPosition, NodeId, PathId};
 use random::Rng;
 
 use super::graph::TrainingGraph;
 
 mod config;
+mod stick;
 
 pub use config::CommandConfig;
 
@@ -32,6 +33,8 @@ const SWEEP_SECS: [f32; 2] = [4.0, 8.0];
 pub struct Command {
     /// Where to go, world.
     pub target: Vec2,
+    /// Where the policy sees the target, world: corrected by steering when it is assisted.
+    pub seen_target: Vec2,
     /// Where on the graph it acts.
     pub position: GraphPosition,
     /// True when the target is to be reached and stood at.
@@ -53,6 +56,11 @@ pub struct Command {
     target_ticks: u32,
     /// Direction of a stick held by a player, radians; `None` for targets fixed in the world.
     stick: Option<f32>,
+    /// True for a stick that goes through turn assist and steering, as in a game.
+    assisted: bool,
+    /// True for a stick whose release leads back to standing along the path.
+    leads_to_standing: bool,
+    steering: SteeringState,
 }
 
 impl Default for Command {
@@ -112,6 +120,7 @@ impl Command {
     fn resting(path: PathId, coordinate: f32, position: GraphPosition) -> Self {
         Self {
             target: Vec2::ZERO,
+            seen_target: Vec2::ZERO,
             position,
             stop: false,
             path,
@@ -124,6 +133,9 @@ impl Command {
             fall: FallDetector::default(),
             target_ticks: 0,
             stick: None,
+            assisted: false,
+            leads_to_standing: false,
+            steering: SteeringState::default(),
         }
     }
 
@@ -142,13 +154,16 @@ impl Command {
         rng: &mut Rng,
     ) {
         self.stick = rng.chance(config.stick_share).then_some(heading);
+        self.assisted = self.stick.is_some() && rng.chance(config.assisted_share);
         self.renew_target(config, graph, (position, Some(heading)), rng);
         self.follow_stick(graph, position);
+        self.seen_target = self.target;
     }
 
     /// Writes where the coordinate is going, for the critic: distances to the requested coordinate and to the goal.
     pub fn intent_into(&self, out: &mut [f32]) {
-        let intent = [self.asked - self.coordinate, self.goal - self.coordinate];
+        let asked = if self.is_released() { 0.0 } else { self.asked };
+        let intent = [asked - self.coordinate, self.goal - self.coordinate];
         out.iter_mut().zip(intent).for_each(|(out, value)| *out = value);
     }
 
@@ -170,10 +185,11 @@ impl Command {
         &mut self,
         config: &CommandConfig,
         graph: &TrainingGraph,
-        root: Vec2,
+        state: &CharacterState,
         heights: Heights,
         rng: &mut Rng,
     ) {
+        let root = state.root().position.truncate();
         self.target_ticks = self.target_ticks.saturating_sub(1);
         if self.target_ticks == 0 {
             self.renew_target(config, graph, (root, None), rng);
@@ -193,15 +209,15 @@ impl Command {
                 }
             }
         }
+        self.follow_stick(graph, root);
         let (rules, mut next) = (graph.policy_graph(), self.position);
-        rules.travel(&mut next, graph.position(self.path, self.asked), DT_SECS);
+        rules.travel(&mut next, graph.position(self.path, self.assist(graph, state)), DT_SECS);
         let limits = [self.position, next].map(|position| fall_height(rules, position));
         if !self.fall.holds_back(limits, heights, DT_SECS) {
             self.position = next;
             let coordinate = graph.paths().get(self.path.index()).and_then(|path| path.coordinate(next));
             self.coordinate = coordinate.unwrap_or(self.coordinate);
         }
-        self.follow_stick(graph, root);
     }
 
     fn renew_target(
@@ -218,6 +234,7 @@ impl Command {
         let slow = speed > 0.0 && speed < SLOW_MPS;
         let of_slow = config.slow_stop_share.filter(|_| slow);
         self.stop = rng.chance(of_slow.unwrap_or(config.stop_share));
+        self.leads_to_standing = !slow && graph.begins_standing(self.path);
         if let Some(direction) = &mut self.stick {
             // A player mostly turns by up to a quarter, and in a hurry by any angle.
             let anywhere = rng.chance(config.any_direction_share);
@@ -232,19 +249,6 @@ impl Command {
         let distance =
             if self.stop { 0.0 } else { rng.range(config.target_metres[0], config.target_metres[1]) };
         self.target = position + distance * Vec2::from_angle(angle);
-    }
-
-    /// A stick's target goes ahead of the character; below the second node of a path that begins with standing it is as
-    /// near as the stick is pushed little.
-    fn follow_stick(&mut self, graph: &TrainingGraph, position: Vec2) {
-        let Some(direction) = self.stick else { return };
-        let begins_standing = graph.speed_mps(graph.position(self.path, 0.0)) == 0.0;
-        let push = match (self.stop, begins_standing && graph.end(self.path) > 0.0) {
-            (true, _) => 0.0,
-            (false, true) => self.asked.min(1.0),
-            (false, false) => 1.0,
-        };
-        self.target = position + push * TARGET_RANGE_METRES * Vec2::from_angle(direction);
     }
 }
 

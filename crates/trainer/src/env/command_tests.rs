@@ -1,13 +1,23 @@
+use policy_core::Skeleton;
+
 use super::super::config::EnvironmentConfig;
 use super::super::graph::GraphNode;
 use super::super::termination::Termination;
+use super::*;
 
 /// A character that stands.
 const UP: Heights = Heights { root: 0.9, head: 1.5 };
 
 /// A character on hands and knees.
 const LOW: Heights = Heights { root: 0.3, head: 0.5 };
-use super::*;
+
+/// A character at a horizontal position that faces along x.
+fn at(position: Vec2) -> CharacterState {
+    let skeleton = Skeleton::humanoid();
+    let mut state = CharacterState::new(&skeleton);
+    state.body_mut(skeleton.root()).position = position.extend(0.9);
+    state
+}
 
 fn with(command: CommandConfig) -> EnvironmentConfig {
     EnvironmentConfig { command, ..EnvironmentConfig::default() }
@@ -29,7 +39,7 @@ fn on_a_single_node_the_blend_stays() {
     let mut command = Command::start(&config, &graph, false, &mut rng);
     command.aim(&config, &graph, (Vec2::ZERO, 0.0), &mut rng);
     for _ in 0..1000 {
-        command.advance(&config, &graph, Vec2::ZERO, UP, &mut rng);
+        command.advance(&config, &graph, &at(Vec2::ZERO), UP, &mut rng);
         assert_eq!(graph.pair_and_blend(command.position), (0, 1.0));
     }
 }
@@ -42,7 +52,7 @@ fn it_can_stay_at_the_end_of_an_edge() {
         let mut command = Command::start(&config, &graph, false, &mut rng);
         command.aim(&config, &graph, (Vec2::ZERO, 0.0), &mut rng);
         for _ in 0..100 {
-            command.advance(&config, &graph, Vec2::ZERO, UP, &mut rng);
+            command.advance(&config, &graph, &at(Vec2::ZERO), UP, &mut rng);
             assert_eq!(graph.pair_and_blend(command.position), (0, 1.0));
         }
     }
@@ -57,7 +67,7 @@ fn blends_and_targets_stay_in_range_and_are_renewed() {
         command.aim(&config, &graph, (Vec2::ONE, 0.0), &mut rng);
         for _ in 0..150 {
             let before = command.target;
-            command.advance(&config, &graph, Vec2::ONE, UP, &mut rng);
+            command.advance(&config, &graph, &at(Vec2::ONE), UP, &mut rng);
             assert!((0.0..=1.0).contains(&graph.pair_and_blend(command.position).1));
             assert!(command.target.distance(Vec2::ONE) <= 10.001);
             targets += usize::from(command.target != before);
@@ -84,7 +94,7 @@ fn a_moving_coordinate_rests_where_it_came_to() {
         let mut still = 60;
         for _ in 0..300 {
             let before = graph.pair_and_blend(command.position).1;
-            command.advance(&config, &graph, Vec2::ZERO, UP, &mut rng);
+            command.advance(&config, &graph, &at(Vec2::ZERO), UP, &mut rng);
             if graph.pair_and_blend(command.position).1 == before {
                 still += 1;
             } else {
@@ -112,23 +122,23 @@ fn leaving_a_low_gait_requires_standing_first() {
     let mut rng = Rng::new(6, 1);
     let mut command = Command::start(&config, &graph, false, &mut rng);
     while graph.pair_and_blend(command.position).1 > 0.0 {
-        command.advance(&config, &graph, Vec2::ZERO, UP, &mut rng);
+        command.advance(&config, &graph, &at(Vec2::ZERO), UP, &mut rng);
     }
     let mut held = 0.0_f32;
     for _ in 0..400 {
-        command.advance(&config, &graph, Vec2::ZERO, LOW, &mut rng);
+        command.advance(&config, &graph, &at(Vec2::ZERO), LOW, &mut rng);
         held = held.max(command.fall.rising_seconds());
     }
     assert!(held > 0.0 && !command.stuck(), "{held}");
     // Asked to stay up, it is late after 0.8 s and stuck after three.
     let mut command = Command { asked: 0.0, goal: 0.0, ..Command::at(&graph, PathId::new(0), 0.01) };
     for tick in 1..=95 {
-        command.advance(&config, &graph, Vec2::ZERO, LOW, &mut rng);
+        command.advance(&config, &graph, &at(Vec2::ZERO), LOW, &mut rng);
         assert!(command.is_late() == (tick > 24) || tick == 24, "{tick}");
         assert!(command.stuck() == (tick >= 90) || (89..=91).contains(&tick), "{tick}");
         assert!(command.position.as_node().is_none(), "it waits");
     }
-    command.advance(&config, &graph, Vec2::ZERO, UP, &mut rng);
+    command.advance(&config, &graph, &at(Vec2::ZERO), UP, &mut rng);
     assert!(command.position.as_node().is_some() && !command.is_late());
 }
 
@@ -143,7 +153,7 @@ fn a_sweep_goes_to_both_ends_and_does_not_rest() {
         // A sweep there and back takes 4 to 8 s.
         for _ in 0..250 {
             let before = graph.pair_and_blend(command.position).1;
-            command.advance(&config, &graph, Vec2::ZERO, UP, &mut rng);
+            command.advance(&config, &graph, &at(Vec2::ZERO), UP, &mut rng);
             ends = [
                 ends[0] || graph.pair_and_blend(command.position).1 == 0.0,
                 ends[1] || graph.pair_and_blend(command.position).1 == 1.0,
@@ -169,7 +179,7 @@ fn the_position_follows_what_is_asked_no_faster_than_an_edge_allows() {
         command.aim(&config, &graph, (Vec2::ZERO, 0.0), &mut rng);
         for tick in 0..300 {
             let (before, position) = (graph.pair_and_blend(command.position).1, Vec2::splat(tick as f32));
-            command.advance(&config, &graph, position, UP, &mut rng);
+            command.advance(&config, &graph, &at(position), UP, &mut rng);
             let step = (graph.pair_and_blend(command.position).1 - before).abs();
             assert!(step <= DT_SECS + 1e-6, "{step}");
             moved += step;
@@ -189,7 +199,7 @@ fn an_episode_that_starts_at_a_node_rests_there_or_goes_elsewhere() {
         let mut command = Command::start(&config, &graph, true, &mut rng);
         at[command.position.as_node().expect("at a node").index()] += 1;
         let before = command.position;
-        (0..30).for_each(|_| command.advance(&config, &graph, Vec2::ZERO, UP, &mut rng));
+        (0..30).for_each(|_| command.advance(&config, &graph, &at(Vec2::ZERO), UP, &mut rng));
         resting += usize::from(command.position == before);
         assert!(!command.sweeps);
     }
@@ -214,7 +224,7 @@ fn a_stick_turns_by_a_quarter_at_most_unless_any_direction_is_asked_for() {
         let mut most: f32 = 0.0;
         for _ in 0..500 {
             let before = command.target;
-            command.advance(&config, &graph, Vec2::ZERO, UP, &mut rng);
+            command.advance(&config, &graph, &at(Vec2::ZERO), UP, &mut rng);
             most = most.max(before.angle_to(command.target).abs());
         }
         most

@@ -189,8 +189,11 @@ impl Env {
     /// Reward terms of a tick, without tracking.
     fn reward(&self, context: &EnvContext<'_>, velocity: Vec2) -> RewardTerms {
         let (config, graph, position) = (&context.config.reward, context.graph, self.command.position);
-        let pace =
-            Pace { speed_mps: graph.speed_mps(position), speed_scale_mps: graph.speed_scale_mps(position) };
+        let prompt_mps = if config.prompt_start { self.command.prompt_mps(graph) } else { 0.0 };
+        let pace = Pace {
+            speed_mps: graph.speed_mps(position).max(prompt_mps),
+            speed_scale_mps: graph.speed_scale_mps(position),
+        };
         let height = (config.height_share, graph.root_metres(position));
         let terms = match config.task {
             Task::Target if self.command.is_late() => RewardTerms::default(),
@@ -209,9 +212,8 @@ impl Env {
 
     /// Renews target and position on the graph, after the tick's reward.
     pub fn advance_command(&mut self, context: &EnvContext<'_>) {
-        let root = self.root_position();
         let heights = Heights::of(context.skeleton, &self.state);
-        self.command.advance(&context.config.command, context.graph, root, heights, &mut self.rng);
+        self.command.advance(&context.config.command, context.graph, &self.state, heights, &mut self.rng);
         self.exploration.tick(&context.config.exploration, &mut self.rng);
     }
 

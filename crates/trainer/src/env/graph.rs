@@ -107,6 +107,12 @@ impl TrainingGraph {
         if self.lone.is_some() { 0.0 } else { self.graph.path(path).end() }
     }
 
+    /// True for a path of more than one node whose first one stands.
+    #[must_use]
+    pub fn begins_standing(&self, path: PathId) -> bool {
+        self.end(path) > 0.0 && self.speed_mps(self.position(path, 0.0)) == 0.0
+    }
+
     /// A random path.
     pub fn sample_path(&self, rng: &mut Rng) -> PathId {
         PathId::new(rng.index(self.graph.paths().len().max(1)))

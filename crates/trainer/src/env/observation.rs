@@ -25,7 +25,7 @@ impl Env {
         let (observation, target) = input.split_at_mut(context.skeleton.observation_len());
         observe_into(context.skeleton, &self.state, observation);
         context.normalisers.observation.normalise_in_place(observation);
-        target.copy_from_slice(&target_input(&self.state, self.command.target));
+        target.copy_from_slice(&target_input(&self.state, self.command.seen_target));
         let (position, intent) = rest.split_at_mut(context.graph.position_len());
         context.graph.position_into(self.command.position, position);
         self.command.intent_into(intent);

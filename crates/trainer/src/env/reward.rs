@@ -27,6 +27,8 @@ pub struct RewardConfig {
     pub task_weight: f32,
     /// Least scale of the speed reward, metres per second. A slow gait needs a small one, or standing still is almost as good.
     pub speed_scale_mps: f32,
+    /// True to command the speed of the first gait as soon as the stick asks for it, while the coordinate still leaves standing.
+    pub prompt_start: bool,
     /// Weight of the squared sideways speed beside the squared error of the speed.
     pub sideways_weight: f32,
     /// Share of the speed reward that falls evenly with the velocity error, from 1 at none to 0 at twice the commanded speed.
@@ -57,6 +59,7 @@ impl Default for RewardConfig {
             task: Task::Target,
             task_weight: 0.5,
             speed_scale_mps: 0.6,
+            prompt_start: false,
             sideways_weight: 0.25,
             linear_speed_share: 0.0,
             strict_facing_share: 0.0,

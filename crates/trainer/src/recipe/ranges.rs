@@ -25,6 +25,7 @@ const RANGES: &[(&str, f64, f64)] = &[
     ("environment.command.fast_target_factor", 0.1, 100.0),
     ("environment.command.stick_share", 0.0, 1.0),
     ("environment.command.any_direction_share", 0.0, 1.0),
+    ("environment.command.assisted_share", 0.0, 1.0),
     ("environment.command.sweep_share", 0.0, 1.0),
     ("environment.command.edge_sweep_secs", 0.05, 600.0),
     ("environment.command.edge_rest_secs", 0.0, 600.0),

@@ -22,7 +22,7 @@ pub(super) fn skill_alone(mut checkpoint: Checkpoint, skill: &str) -> Checkpoint
     let mut networks: HashMap<_, _> =
         alone.into_iter().filter_map(|(role, trained)| Some((role.to_owned(), trained?))).collect();
     for trained in networks.values_mut() {
-        trained.adam = Adam { mean: Vec::new(), square: Vec::new(), steps: 0 };
+        trained.adam = Adam::new(trained.network.parameters.len());
     }
     let p = &checkpoint.progress;
     Checkpoint::new(networks, (p.seed, p.samples, p.secs), p.learning_rate, p.rng)
@@ -62,4 +62,32 @@ pub(super) fn restore(
     training.learner.actors.iter_mut().for_each(|a| a.learning_rate = checkpoint.progress.learning_rate);
     training.learner.rng = checkpoint.progress.rng;
     Ok(checkpoint.progress.secs)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::checkpoint::Trained;
+    use crate::nn::Network;
+
+    #[test]
+    fn a_skill_alone_can_be_trained_on() {
+        let trained = || {
+            let network = Network::zeros(&[3, 2, 1]);
+            let adam = Adam { steps: 7, ..Adam::new(network.parameters.len()) };
+            Trained { network, adam }
+        };
+        let roles = ["walk.actor", "walk.discriminator", "idle.actor", "critic"];
+        let networks = roles.map(|role| (role.to_owned(), trained())).into();
+        let rng = random::Rng::new(1, 1);
+        let alone = skill_alone(Checkpoint::new(networks, (1, 10, 1.0), 1e-4, rng), "walk");
+        let mut found: Vec<_> = alone.networks.keys().map(String::as_str).collect();
+        found.sort_unstable();
+        assert_eq!(found, [ACTOR, DISCRIMINATOR]);
+        for Trained { mut network, mut adam } in alone.networks.into_values() {
+            assert_eq!(adam.steps, 0, "Adam begins anew");
+            let gradient = vec![1.0; network.parameters.len()];
+            adam.step(&mut network.parameters, &gradient, 0.1, 0.0);
+        }
+    }
 }

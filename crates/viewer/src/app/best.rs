@@ -3,7 +3,9 @@
 use std::path::PathBuf;
 
 use super::App;
-use crate::playground::{BestTime, RaceEvent};
+use playground::RaceEvent;
+
+use crate::best_time::BestTime;
 
 /// The best time over the course, and where it is kept.
 #[derive(Clone, Debug, Default, PartialEq)]

@@ -2,9 +2,9 @@
 
 use serde::Serialize;
 
-use crate::playground::RaceState;
 use crate::sim::SharedWorld;
 use crate::text::counted;
+use playground::RaceState;
 
 /// The report, as written to the file.
 #[derive(Clone, Debug, PartialEq, Serialize)]

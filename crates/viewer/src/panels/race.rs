@@ -4,8 +4,8 @@ use egui::{Align2, Area, RichText, Ui};
 
 use super::{PRESENT, REQUESTED, frame};
 use crate::app::App;
-use crate::playground::RaceState;
 use crate::text::counted;
+use playground::RaceState;
 
 /// The overlay at the top of the picture; nothing on the empty floor.
 pub(super) fn show(ui: &Ui, app: &App, free: egui::Rect) {

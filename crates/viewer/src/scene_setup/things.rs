@@ -4,9 +4,9 @@ use glam::{Mat4, Quat, Vec3};
 use physics_bridge::{FixtureShape, Solid as Shape};
 
 use super::ring;
-use crate::playground::{Paint, RaceState};
 use crate::render::{Marker, Scene, Solid};
 use crate::sim::SharedWorld;
+use playground::{Paint, RaceState};
 
 /// Marks of cubes: their edges.
 const EDGES: f32 = 1.0;

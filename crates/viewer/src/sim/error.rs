@@ -1,6 +1,6 @@
 //! Why a world can't be made or changed.
 
-use crate::playground::SceneFileError;
+use playground::SceneFileError;
 
 /// What stops a [`Simulation`](super::Simulation) from being made or changed.
 #[derive(Debug, thiserror::Error)]

@@ -21,6 +21,7 @@ use std::time::{Duration, Instant};
 
 use physics::{Diverged, Model};
 use physics_bridge::ReplayFile;
+use playground::WanderPath;
 use policy_core::{
     Blend, BodyId, Button, CharacterPack, Command, CommandMapper, GamepadState, Goal, Heading, SkillId,
 };
@@ -37,7 +38,6 @@ pub use scene_kind::SceneKind;
 pub use second::SECOND_CHARACTER;
 use second::SecondPlayer;
 pub use setup::{MAX_CHARACTERS, SimConfig, model_of, rest_positions};
-use shared::Wishes;
 pub use shared::{Held, LooseKind, MOST_BALLS, Piece, SharedWorld};
 pub use steered::{SteeredCharacter, interpolated};
 pub use throw::{SPAWN_BUTTON, THROW_BUTTON};
@@ -108,7 +108,7 @@ pub struct Simulation {
     pack: Arc<CharacterPack>,
     model: Model,
     bodies: Bodies,
-    wishes: Wishes,
+    wander_path: WanderPath,
     steered: Vec<SteeredCharacter>,
     ghost: Option<Ghost>,
     playback: Option<Playback>,
@@ -206,7 +206,7 @@ impl Simulation {
                 self.observe(dt_secs)
             }
             Bodies::Together(shared) => {
-                shared.give_commands([Some(command), second], self.wishes, &mut self.steered, dt_secs);
+                shared.give_commands([Some(command), second], self.wander_path, &mut self.steered, dt_secs);
                 let put_back = shared.tick(&mut self.steered, self.model.described(), dt_secs);
                 self.times.policy = shared.control_time();
                 self.observe_together(&put_back, dt_secs);

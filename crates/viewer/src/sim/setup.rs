@@ -11,10 +11,9 @@ use super::bodies::Bodies;
 use super::rewind::PadRing;
 use super::{
     Overrides, SceneKind, SharedWorld, Shove, SimError, Simulation, SteeredCharacter, TickTimes, Totals,
-    Wishes,
 };
 use crate::assets;
-use crate::playground::Playground;
+use playground::{Playground, WanderPath};
 
 /// Most characters in one world.
 pub const MAX_CHARACTERS: usize = 200;
@@ -131,7 +130,7 @@ impl Simulation {
         let mapper = CommandMapper::new(&pack, &Bindings::default());
         Ok(Self {
             config,
-            wishes: Wishes::new(&pack),
+            wander_path: WanderPath::of(&pack),
             pack,
             model,
             bodies,
@@ -174,7 +173,8 @@ impl Simulation {
             .with_settings(self.model().settings())?
             .with_terrain(self.config.ground.terrain(self.config.seed))?;
         let populated = populate(&model, &pack, self.blend_mode(), self.config)?;
-        (self.mapper, self.wishes) = (CommandMapper::new(&pack, &Bindings::default()), Wishes::new(&pack));
+        self.mapper = CommandMapper::new(&pack, &Bindings::default());
+        self.wander_path = WanderPath::of(&pack);
         self.overrides = Overrides::default();
         self.playback = None;
         self.pack = pack;

@@ -16,10 +16,9 @@ use policy_core::{BodyId, Heading};
 
 use super::rewind::Ring;
 use super::{SimError, SteeredCharacter};
-use crate::playground::{Playground, Race, RaceEvent, Wanderer};
 pub use loose::{LooseKind, MOST_BALLS};
 pub use pieces::Piece;
-pub(super) use wishes::Wishes;
+use playground::{Playground, Race, RaceEvent, Wanderer, swing_force};
 
 /// What the mouse can hold.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -83,7 +82,7 @@ impl SharedWorld {
             }
             Ok((handles, pieces))
         })?;
-        let wanderer = |(index, start): (usize, &crate::playground::Start)| {
+        let wanderer = |(index, start): (usize, &playground::Start)| {
             Wanderer::new(start.zone, start.heading, seed.into(), index as u64)
         };
         let wanderers = scene.starts[..characters].iter().enumerate().skip(1).map(wanderer).collect();
@@ -329,11 +328,7 @@ impl SharedWorld {
             let Some(prop) = piece.of_scene.map(|index| &self.scene.props[index]) else { continue };
             let (Some(height), Some(anchor)) = (prop.swing_m, piece.anchor) else { continue };
             let Ok(Motion { position, velocity, .. }) = self.world.motion(piece.handle) else { continue };
-            let gravity = 9.81;
-            let lowest = anchor.z - anchor.distance(position);
-            let lacking = gravity * (height - (position.z - lowest)) - 0.5 * velocity.length_squared();
-            if lacking > 0.02 * gravity * height && velocity.length() > 0.05 {
-                let force = velocity.normalize() * (prop.prop.mass_kg * (0.5 * lacking).min(1.5));
+            if let Some(force) = swing_force(height, prop.prop.mass_kg, anchor, position, velocity) {
                 let _ = self.world.push(piece.handle, force, dt_secs);
             }
         }

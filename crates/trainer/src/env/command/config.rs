@@ -23,6 +23,8 @@ pub struct CommandConfig {
     pub stick_share: f32,
     /// Share of a stick's new directions that are any at all; the others turn by at most 90 degrees.
     pub any_direction_share: f32,
+    /// Share of sticks that steer as in a game: through turn assist and steering, and released they lead to standing.
+    pub assisted_share: f32,
     /// Share of coordinates that go to and fro over the whole path, without a rest.
     pub sweep_share: f32,
     /// Seconds in which a moving coordinate crosses an edge, least and most.
@@ -51,6 +53,7 @@ impl Default for CommandConfig {
             fast_target_factor: 1.0,
             stick_share: 0.0,
             any_direction_share: 0.1,
+            assisted_share: 0.0,
             sweep_share: 0.0,
             edge_sweep_secs: [0.5, 6.0],
             edge_rest_secs: [0.0, 2.0],

@@ -4,7 +4,7 @@ use glam::Vec3;
 use physics_bridge::{Motion, Prop, Solid, WorldEdit, WorldError};
 
 use super::{Piece, SharedWorld};
-use crate::playground::Paint;
+use playground::Paint;
 
 /// Most balls at a time.
 pub const MOST_BALLS: usize = 24;

@@ -4,7 +4,7 @@ use glam::{Quat, Vec3};
 use physics_bridge::{Joint, Motion, PropHandle, Solid, WorldEdit, WorldError};
 
 use super::{LooseKind, SharedWorld};
-use crate::playground::{Paint, Playground};
+use playground::{Paint, Playground};
 
 /// A prop of the scene, or one that was thrown or put there.
 #[derive(Clone, Debug, PartialEq)]

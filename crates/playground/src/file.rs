@@ -1,7 +1,7 @@
 //! Reads a scene from RON and checks it. Lengths are metres, angles degrees, sizes whole and not halved.
 
 use glam::{EulerRot, Quat, Vec2, Vec3};
-use physics_bridge::{Fixture, Joint, Prop, Solid};
+use policy_core::contract::{Fixture, Joint, Prop, Solid};
 use ron::extensions::Extensions;
 use serde::Deserialize;
 

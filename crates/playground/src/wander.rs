@@ -1,6 +1,9 @@
 //! Where a character of the scene wanders: seeded, simple, turned back at the edge of its zone.
 
+use std::f32::consts::{PI, TAU};
+
 use glam::Vec2;
+use policy_core::{CharacterPack, Command, Goal, PathId};
 use random::Rng;
 
 /// How long it keeps to one direction, seconds.
@@ -9,6 +12,10 @@ const STROLL_SECS: [f32; 2] = [2.0, 6.0];
 const STANDS: f32 = 0.2;
 /// Nearer to the edge of its zone it turns back, metres.
 const MARGIN_M: f32 = 1.0;
+/// How far ahead its target is, metres: as far as a full stick's.
+const AHEAD_M: f32 = 5.0;
+/// In a hurry it is so far along the path behind its second node.
+const HURRY: f32 = 0.25;
 /// Fastest that it turns its direction, radians per second.
 const TURN_RADPS: f32 = 1.6;
 
@@ -19,6 +26,36 @@ pub struct Wish {
     pub direction: Option<Vec2>,
     /// Of the speed path: 0 the slowest gait, 1 a quarter of the way to the fastest.
     pub haste: f32,
+}
+
+/// The path that wanderers move along.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct WanderPath(Option<(PathId, f32)>);
+
+impl WanderPath {
+    /// That of the stick, where the pack has one.
+    #[must_use]
+    pub fn of(pack: &CharacterPack) -> Self {
+        let named = pack.graph().path_named(&policy_core::Bindings::default().stick_path);
+        Self(named.map(|path| (path, pack.graph().path(path).end())))
+    }
+
+    /// The command of a wish for a character at a point.
+    #[must_use]
+    pub fn command(self, wish: Wish, at: Vec2) -> Command {
+        let goal = |coordinate: f32| match self.0 {
+            Some((path, end)) => Goal::Path { path, coordinate: coordinate.min(end) },
+            None => Goal::Stay,
+        };
+        match wish.direction {
+            Some(direction) => Command {
+                target: Some(at + direction * AHEAD_M),
+                goal: goal(1.0 + HURRY * wish.haste),
+                ..Command::default()
+            },
+            None => Command { goal: goal(0.0), ..Command::default() },
+        }
+    }
 }
 
 /// The state of one wanderer: plain data.
@@ -41,6 +78,15 @@ impl Wanderer {
         Self { rng, zone, left_secs: 0.0, angle: heading, wanted: heading, stands: true, haste: 0.0 }
     }
 
+    /// Gives the bits of the whole state to `out`: what a hash of it is made of.
+    pub fn bits(&self, mut out: impl FnMut(u32)) {
+        let Self { mut rng, zone: _, left_secs, angle, wanted, stands, haste } = *self;
+        [left_secs, angle, wanted, haste].into_iter().for_each(|value| out(value.to_bits()));
+        // What it would draw next tells where its numbers are.
+        out(rng.next_u32());
+        out(u32::from(stands));
+    }
+
     /// One tick of `dt_secs` for a character at a point.
     pub fn tick(&mut self, at: Vec2, dt_secs: f32) -> Wish {
         self.left_secs -= dt_secs;
@@ -58,8 +104,7 @@ impl Wanderer {
             let aside = self.rng.range(-0.9, 0.9);
             (self.wanted, self.stands) = ((-out).to_angle() + aside, false);
         }
-        let off = (self.wanted - self.angle + std::f32::consts::PI).rem_euclid(std::f32::consts::TAU)
-            - std::f32::consts::PI;
+        let off = (self.wanted - self.angle + PI).rem_euclid(TAU) - PI;
         self.angle += off.clamp(-TURN_RADPS * dt_secs, TURN_RADPS * dt_secs);
         let direction = (!self.stands).then(|| Vec2::from_angle(self.angle));
         Wish { direction, haste: self.haste }

@@ -1,11 +1,12 @@
 //! Things that never move in a world. Every number has a range.
 
-use std::sync::Arc;
+use alloc::sync::Arc;
 
 use glam::{Quat, Vec2, Vec3};
 
-use super::prop::{FRICTION_RANGE, SIZE_RANGE_M, Solid, check_place, check_points};
-use super::world_error::{WorldError, within};
+use super::description_error::{DescriptionError, within};
+use super::prop::FRICTION_RANGE;
+use super::solid::{SIZE_RANGE_M, Solid, check_place, check_points};
 
 /// Most triangles of a mesh.
 pub const MAX_TRIANGLES: usize = 4096;
@@ -21,7 +22,7 @@ const LEAST_AREA_M2: f32 = 1e-6;
 pub struct Fixture {
     /// Its shape.
     pub shape: FixtureShape,
-    /// Metres, world space, at most [`MAX_DISTANCE_M`](crate::MAX_DISTANCE_M) from the origin.
+    /// Metres, world space, at most [`MAX_DISTANCE_M`](super::MAX_DISTANCE_M) from the origin.
     pub position: Vec3,
     /// `world_from_fixture`, a unit quaternion.
     pub rotation: Quat,
@@ -31,7 +32,6 @@ pub struct Fixture {
 
 /// Shape of a [`Fixture`].
 #[derive(Clone, Debug, PartialEq)]
-#[non_exhaustive]
 pub enum FixtureShape {
     /// A convex body.
     Solid(Solid),
@@ -66,7 +66,11 @@ impl Fixture {
         Self { shape, position, rotation: Quat::IDENTITY, friction: 1.0 }
     }
 
-    pub(crate) fn check(&self) -> Result<(), WorldError> {
+    /// Checks every number.
+    ///
+    /// # Errors
+    /// When one is out of its range; the first one is named.
+    pub fn check(&self) -> Result<(), DescriptionError> {
         const WHAT: &str = "a fixture";
         check_place(WHAT, self.position, self.rotation)?;
         within(WHAT, "friction", self.friction, FRICTION_RANGE)?;
@@ -79,10 +83,10 @@ impl Fixture {
                 within(WHAT, "half_extents.x", half_extents.x, [SIZE_RANGE_M[0], 10_000.0])?;
                 within(WHAT, "half_extents.y", half_extents.y, [SIZE_RANGE_M[0], 10_000.0])?;
                 if rows * columns != heights.len() {
-                    return Err(WorldError::Heights { expected: rows * columns, found: heights.len() });
+                    return Err(DescriptionError::Heights { expected: rows * columns, found: heights.len() });
                 }
                 if heights.len() > MAX_HEIGHTS {
-                    return Err(WorldError::TooMany { what: "heights", most: MAX_HEIGHTS });
+                    return Err(DescriptionError::TooMany { what: "heights", most: MAX_HEIGHTS });
                 }
                 heights.iter().try_for_each(|&h| within(WHAT, "heights", h, [-100.0, 100.0]))
             }
@@ -90,17 +94,17 @@ impl Fixture {
     }
 }
 
-fn check_triangles(points: &[Vec3], triangles: &[[u32; 3]]) -> Result<(), WorldError> {
+fn check_triangles(points: &[Vec3], triangles: &[[u32; 3]]) -> Result<(), DescriptionError> {
     check_points("a fixture", points)?;
     within("a fixture", "triangles", triangles.len() as f32, [1.0, MAX_TRIANGLES as f32])?;
     for (triangle, corners) in triangles.iter().enumerate() {
         if let Some(&found) = corners.iter().find(|&&corner| corner as usize >= points.len()) {
-            return Err(WorldError::Corner { triangle, corners: points.len(), found });
+            return Err(DescriptionError::Corner { triangle, corners: points.len(), found });
         }
         let [a, b, c] = corners.map(|corner| points[corner as usize]);
         let found_m2 = 0.5 * (b - a).cross(c - a).length();
         if found_m2.is_nan() || found_m2 < LEAST_AREA_M2 {
-            return Err(WorldError::Sliver { triangle, least_m2: LEAST_AREA_M2, found_m2 });
+            return Err(DescriptionError::Sliver { triangle, least_m2: LEAST_AREA_M2, found_m2 });
         }
     }
     Ok(())

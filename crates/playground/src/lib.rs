@@ -1,21 +1,42 @@
 //! The playground: what stands in it, the course through it, and where its other characters wander. Plain data and
 //! pure functions of it; knows no physics engine, no drawing and no devices.
+//!
+//! A physics engine builds [`Playground::fixtures`] and [`Playground::props`]; a [`Race`] and one [`Wanderer`] for each
+//! further character go along with its ticks. Equal inputs give the same bits on every machine.
+//!
+//! ```
+//! # fn main() -> Result<(), playground::SceneFileError> {
+//! use glam::Vec2;
+//! use playground::{Playground, Race, RaceEvent};
+//!
+//! let scene = Playground::shipped()?;
+//! let mut race = Race::default();
+//! let start = scene.checkpoints[0].at;
+//! assert_eq!(race.tick(&scene.checkpoints, start, false), Some(RaceEvent::Started));
+//! assert_eq!(scene.height_at(Vec2::ZERO, 1.0), 0.0);
+//! # Ok(())
+//! # }
+//! ```
 
-mod best_time;
 mod file;
 mod layout;
 mod race;
+mod swing;
 mod wander;
 
 use std::sync::Arc;
 
 use glam::{Quat, Vec2, Vec3};
-use physics_bridge::{Fixture, Joint, Prop};
+use policy_core::contract::{Fixture, Joint, Prop};
 
-pub use best_time::{BestTime, BestTimeError};
 pub use file::SceneFileError;
 pub use race::{Race, RaceEvent, RaceState};
-pub use wander::{Wanderer, Wish};
+pub use swing::swing_force;
+pub use wander::{WanderPath, Wanderer, Wish};
+
+/// The text of the scene that ships.
+pub const SHIPPED: &str =
+    include_str!(concat!(env!("CARGO_MANIFEST_DIR"), "/../../assets/scenes/playground.ron"));
 
 /// Colours of what stands in a scene.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Deserialize)]
@@ -103,6 +124,6 @@ impl Playground {
     /// # Errors
     /// When its text is no scene.
     pub fn shipped() -> Result<Arc<Self>, SceneFileError> {
-        Self::from_ron(crate::assets::PLAYGROUND).map(Arc::new)
+        Self::from_ron(SHIPPED).map(Arc::new)
     }
 }

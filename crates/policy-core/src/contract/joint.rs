@@ -1,11 +1,10 @@
 //! What holds two props together, or a prop to the world.
 
-use std::f32::consts::TAU;
+use core::f32::consts::TAU;
 
+use super::MAX_DISTANCE_M;
+use super::description_error::{DescriptionError, within};
 use glam::Vec3;
-use policy_core::contract::MAX_DISTANCE_M;
-
-use super::world_error::{WorldError, within};
 
 /// Range of the damping of a hinge, slide or ball joint, N m s/rad or N s/m.
 pub const DAMPING_RANGE: [f32; 2] = [0.0, 10_000.0];
@@ -16,7 +15,6 @@ pub const ROPE_RANGE_M: [f32; 2] = [0.01, 1000.0];
 /// A joint between a prop and another prop or the world. Points and axes are world space, where the props are when
 /// it is added. Two props that a hinge, slide or ball joint joins do not touch each other.
 #[derive(Clone, Copy, Debug, PartialEq)]
-#[non_exhaustive]
 pub enum Joint {
     /// Turns about an axis.
     Hinge {
@@ -55,7 +53,11 @@ pub enum Joint {
 }
 
 impl Joint {
-    pub(crate) fn check(&self) -> Result<(), WorldError> {
+    /// Checks every number.
+    ///
+    /// # Errors
+    /// When one is out of its range; the first one is named.
+    pub fn check(&self) -> Result<(), DescriptionError> {
         const WHAT: &str = "a joint";
         let point = |field, point: Vec3| within(WHAT, field, point.length(), [0.0, MAX_DISTANCE_M]);
         let limits = |range: Option<[f32; 2]>, most: f32| {

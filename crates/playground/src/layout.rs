@@ -1,7 +1,7 @@
 //! Fixtures made of cuboids, and how high the ground of a scene is.
 
 use glam::{Quat, Vec2, Vec3};
-use physics_bridge::{Fixture, FixtureShape, Solid};
+use policy_core::contract::{Fixture, FixtureShape, Solid};
 
 use super::{Paint, PaintedFixture, Playground};
 
@@ -28,9 +28,9 @@ impl Blocks {
 
     /// A slope up from a foot, as long, wide and high as `size`: a turned slab whose lower parts are in the ground.
     pub(super) fn ramp(&mut self, (foot, turn): (Vec3, Quat), size: Vec3, paint: Paint) {
-        let slope = f32::atan2(size.z, size.x);
+        let slope = libm::atan2f(size.z, size.x);
         let rotation = turn * Quat::from_rotation_y(-slope);
-        let slab = Vec3::new(size.x.hypot(size.z), size.y, size.z.max(0.1));
+        let slab = Vec3::new(libm::hypotf(size.x, size.z), size.y, size.z.max(0.1));
         let top = foot + turn * Vec3::new(0.5 * size.x, 0.0, 0.5 * size.z);
         self.cuboid(top - rotation * Vec3::Z * (0.5 * slab.z), slab, rotation, paint);
     }

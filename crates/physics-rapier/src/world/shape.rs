@@ -1,0 +1,54 @@
+//! Shapes of props and fixtures as Rapier's colliders.
+
+use policy_core::contract::{Fixture, FixtureShape, Solid};
+use rapier3d::dynamics::CoefficientCombineRule;
+use rapier3d::geometry::{Array2, ColliderBuilder};
+use rapier3d::math::{Pose, Rotation, Vector};
+use rapier3d::parry::shape::HeightFieldFlags;
+
+use super::WorldError;
+
+/// The collider of a convex body. Rapier's cylinders and capsules lie along y, those of the contract along z.
+pub(super) fn of_solid(solid: &Solid) -> Result<ColliderBuilder, WorldError> {
+    Ok(match solid {
+        Solid::Sphere { radius } => ColliderBuilder::ball(*radius),
+        Solid::Capsule { radius, half_length } => ColliderBuilder::capsule_z(*half_length, *radius),
+        Solid::Cylinder { radius, half_length } => {
+            ColliderBuilder::cylinder(*half_length, *radius).position(upright())
+        }
+        Solid::Cuboid { half_extents: Vector { x, y, z } } => ColliderBuilder::cuboid(*x, *y, *z),
+        Solid::Hull { points } => ColliderBuilder::convex_hull(points).ok_or(WorldError::Hull)?,
+    })
+}
+
+/// The collider of something that never moves, where it is.
+pub(super) fn of_fixture(fixture: &Fixture) -> Result<ColliderBuilder, WorldError> {
+    let place = Pose::from_parts(fixture.position, fixture.rotation);
+    let collider = match &fixture.shape {
+        FixtureShape::Solid(solid) => of_solid(solid)?,
+        FixtureShape::Triangles { points, triangles } => {
+            ColliderBuilder::trimesh(points.to_vec(), triangles.to_vec()).map_err(|_| WorldError::Hull)?
+        }
+        FixtureShape::Heights { rows, columns, half_extents, heights } => {
+            // Rapier's height fields have y up and their rows along z. Turned upright, the rows run against y.
+            let height = |row: usize, column: usize| heights[(rows - 1 - row) * columns + column];
+            let scale = Vector::new(2.0 * half_extents.x, 1.0, 2.0 * half_extents.y);
+            let heights = Array2::from_fn(*rows, *columns, height);
+            // Without the flag a foot that slides over an edge between two triangles stumbles over it.
+            ColliderBuilder::heightfield_with_flags(heights, scale, HeightFieldFlags::FIX_INTERNAL_EDGES)
+                .position(upright())
+        }
+    };
+    let local = collider.position;
+    Ok(rough(collider.position(place * local), fixture.friction))
+}
+
+/// With a friction of which, as in the contract, the greater of two that touch counts.
+pub(super) fn rough(collider: ColliderBuilder, friction: f32) -> ColliderBuilder {
+    collider.friction(friction).friction_combine_rule(CoefficientCombineRule::Max)
+}
+
+/// Turns y to z.
+fn upright() -> Pose {
+    Pose::from_parts(Vector::ZERO, Rotation::from_rotation_x(std::f32::consts::FRAC_PI_2))
+}
