@@ -63,13 +63,15 @@ async function start() {
   exports = await code.default({ module_or_path: wasm });
   fit();
   const players = Math.min(8, Math.max(1, Number(query.get('players')) || 1));
-  demo = await code.Demo.start(canvas, pack, mesh, players);
+  demo = await code.Demo.start(canvas, pack, mesh, players, query.get('scene') === 'flat');
   told.adapter = demo.adapter();
   at('progress').value = 1;
   at('loading').hidden = true;
   at('hud').hidden = false;
   at('touch').hidden = !matchMedia('(pointer: coarse)').matches;
   if (query.get('input') === 'script') demo.restart(true);
+  showPolicies();
+  showPrompts();
   playFragment();
   canvas.focus();
   requestAnimationFrame(frame);
@@ -90,6 +92,8 @@ function attempt(work) {
 
 let last = null;
 let frames = 0;
+/** Pad and buttons of this frame. */
+let input = [[], 0];
 let frameStart = 0;
 function frame(now) {
   if (document.hidden || told.error) { last = null; return; }
@@ -98,7 +102,8 @@ function frame(now) {
   const began = performance.now();
   try {
     const mode = demo.mode();
-    const ticks = demo.advance(secs, pad(), buttons());
+    input = [pad(), buttons()];
+    const ticks = demo.advance(secs, ...input);
     if (ticks > 0) told.physicsMs += 0.1 * ((performance.now() - began) / ticks - told.physicsMs);
     if (mode !== demo.mode()) note(mode === 'playing' ? 'The replay is over: every state was the recorded one.' : 'The script is over.');
   } catch (error) {
@@ -106,12 +111,14 @@ function frame(now) {
     note(`The replay stopped: ${error.message ?? error}`);
   }
   const drawn = demo.draw();
+  if (frames % 6 === 0) { showWeights(); tickPrompts(); }
   if (drawn && told.firstFrameMs === null) told.firstFrameMs = performance.now();
   frames += 1;
   if (now - frameStart > 1000) {
     told.fps = frames * 1000 / (now - frameStart);
     [frames, frameStart] = [0, now];
     at('doing').textContent = demo.doing();
+    showCourse();
     if (told.fps < 24) drawLess();
     at('rate').textContent = `${told.fps.toFixed(0)} fps, physics ${told.physicsMs.toFixed(1)} ms a tick`;
   }
@@ -120,6 +127,75 @@ function frame(now) {
 document.addEventListener('visibilitychange', () => {
   if (!document.hidden && demo && !told.error) { last = null; requestAnimationFrame(frame); }
 });
+
+// ---- What the controller does, the course, and the first steps
+
+/** One bar for each policy. */
+const bars = [];
+function showPolicies() {
+  for (const name of demo.policies()) {
+    const row = document.createElement('div');
+    const bar = document.createElement('i');
+    row.append(name, bar);
+    at('weights').append(row);
+    bars.push(bar);
+  }
+}
+function showWeights() {
+  demo.weights().forEach((weight, index) => {
+    bars[index].style.width = `${Math.round(100 * Math.max(0, Math.min(1, weight)))}%`;
+  });
+}
+
+/** Kept from visit to visit, where the browser allows it. */
+function kept(name, value) {
+  try {
+    if (value === undefined) return JSON.parse(localStorage.getItem(`policy-space.${name}`));
+    localStorage.setItem(`policy-space.${name}`, JSON.stringify(value));
+  } catch { /* a browser that keeps nothing */ }
+  return null;
+}
+
+let counted = false;
+function showCourse() {
+  const [secs, falls] = demo.finished();
+  let best = kept('best');
+  // A replay is nobody's own time.
+  if (secs !== undefined && !counted && demo.mode() === 'recording') {
+    counted = true;
+    if (!(best?.secs <= secs)) {
+      best = { secs, falls };
+      kept('best', best);
+      note(`The best time so far: ${secs.toFixed(1)} s.`);
+    }
+  }
+  if (secs === undefined) counted = false;
+  const course = demo.course();
+  at('course').textContent = course && best?.secs ? `${course} (best ${best.secs.toFixed(1)} s)` : course;
+}
+
+const prompts = [
+  ['Walk with W A S D or the left stick', ([x, y]) => Math.hypot(x, y) > 0.5],
+  ['Run with Shift or the right trigger', ([x, y, , , , fast]) => Math.hypot(x, y) > 0.5 && fast > 0.5],
+  ['Crouch with C or the left trigger', ([, , , , low]) => low > 0.5],
+  ['Roll with E', (_, bits) => bits & 2],
+  ['Fall and get up with Q', (_, bits) => bits & 16],
+];
+function showPrompts() {
+  if (kept('first steps')) return;
+  for (const [text] of prompts) at('prompts').append(Object.assign(document.createElement('li'), { textContent: text }));
+  at('prompts').hidden = false;
+}
+function tickPrompts() {
+  if (at('prompts').hidden || demo.mode() !== 'recording') return;
+  const [now, bits] = input;
+  const rows = [...at('prompts').children];
+  rows.forEach((row, index) => { if (prompts[index][1](now, bits)) row.className = 'done'; });
+  if (rows.every((row) => row.className)) {
+    kept('first steps', true);
+    setTimeout(() => { at('prompts').hidden = true; }, 2000);
+  }
+}
 
 // A slow machine draws coarser shadows and meshes, then fewer pixels, down to half as many along each side.
 let drawScale = 1;

@@ -2,11 +2,12 @@
 
 use glam::{Quat, Vec3};
 use lockstep::{Arena, ArenaConfig, ArenaError, SCRIPT_TICKS, script_pad};
+use playground::RaceState;
 use policy_core::{CharacterPack, FixedRate, GamepadState, Heading};
 use replay::{Mismatch, Pad, Playback, Recorder, Replay, ReplayError};
 use wasm_bindgen::JsError;
 
-/// Where bodies are: origins of their frames and rotations, for each character, then for each crate.
+/// Where bodies are: origins of their frames and rotations, for each character, then for each prop.
 pub type Poses = Vec<(Vec3, Quat)>;
 
 /// Who steers.
@@ -27,7 +28,8 @@ enum Stopped {
 
 pub struct Game {
     pack: Vec<u8>,
-    config: ArenaConfig,
+    /// What the player plays in.
+    chosen: ArenaConfig,
     arena: Arena,
     rate: FixedRate,
     recorder: Recorder,
@@ -38,15 +40,18 @@ pub struct Game {
 }
 
 impl Game {
-    /// A world of so many characters.
-    pub fn new(pack: Vec<u8>, players: usize) -> Result<Self, JsError> {
-        let config = ArenaConfig { players, ..ArenaConfig::default() };
+    /// The world that a player has chosen.
+    pub fn new(pack: Vec<u8>, chosen: ArenaConfig) -> Result<Self, JsError> {
+        Self::in_world(pack, chosen, chosen)
+    }
+
+    fn in_world(pack: Vec<u8>, chosen: ArenaConfig, config: ArenaConfig) -> Result<Self, JsError> {
         let arena = Arena::new(&pack, config)?;
         let recorder = Recorder::new(arena.header())?;
         let rate = FixedRate::new(1.0 / arena.tick_secs());
         let poses = [poses_of(&arena), poses_of(&arena)];
-        let pads = vec![Pad::default(); players];
-        Ok(Self { pack, config, arena, rate, recorder, input: Input::Player, pads, poses })
+        let pads = vec![Pad::default(); config.players];
+        Ok(Self { pack, chosen, arena, rate, recorder, input: Input::Player, pads, poses })
     }
 
     pub fn pack(&self) -> &CharacterPack {
@@ -82,22 +87,54 @@ impl Game {
         }
     }
 
-    /// Begins anew.
+    /// Begins anew. The script is for flat ground.
     pub fn restart(&mut self, script: bool) -> Result<(), JsError> {
-        let pack = std::mem::take(&mut self.pack);
-        *self = Self::new(pack, self.config.players)?;
+        let flat = ArenaConfig { players: self.chosen.players, ..ArenaConfig::default() };
+        let config = if script { flat } else { self.chosen };
+        *self = Self::in_world(self.pack.clone(), self.chosen, config)?;
         if script {
             self.input = Input::Script;
         }
         Ok(())
     }
 
-    /// Plays a replay of this world from the start.
+    /// Plays a replay from the start, in the world that it was played in.
     pub fn play(&mut self, replay: &Replay) -> Result<(), JsError> {
-        self.arena.header().expect(replay.header())?;
-        self.restart(false)?;
-        self.input = Input::Replay(Box::new(Playback::new(replay)));
+        let config = ArenaConfig::of(replay.header())?;
+        let game = Self::in_world(self.pack.clone(), self.chosen, config)?;
+        game.arena.header().expect(replay.header())?;
+        *self = Self { input: Input::Replay(Box::new(Playback::new(replay))), ..game };
         Ok(())
+    }
+
+    /// The course in a few words; empty where there is none.
+    pub fn course(&self) -> String {
+        let count = self.arena.layout().checkpoints.len();
+        let Some(race) = self.arena.race(0).filter(|_| count > 0) else { return String::new() };
+        let (secs, falls) = (race.secs(self.tick_secs()), race.falls());
+        let falls = if falls == 1 { "1 fall".to_owned() } else { format!("{falls} falls") };
+        match race.state() {
+            RaceState::Waiting => "Course: go to the light".into(),
+            RaceState::Running => format!("Course: {secs:.1} s, {falls}, checkpoint {} of {count}", race.next() + 1),
+            RaceState::Finished => format!("Course done: {secs:.1} s, {falls}"),
+        }
+    }
+
+    /// Time and falls of a run over the course that is done.
+    pub fn finished(&self) -> Option<(f32, u32)> {
+        let race = self.arena.race(0)?;
+        (race.state() == RaceState::Finished).then(|| (race.secs(self.tick_secs()), race.falls()))
+    }
+
+    /// Weight of each policy in what the player's character does.
+    pub fn weights(&self) -> Vec<f32> {
+        let mut weights = vec![0.0; self.pack().policies().len()];
+        if let Some(player) = self.arena.player(0) {
+            for term in player.report.blend.terms() {
+                weights[term.policy.index()] += term.weights[0];
+            }
+        }
+        weights
     }
 
     /// Runs the ticks that are due.
@@ -176,7 +213,7 @@ impl Game {
 }
 
 fn poses_of(arena: &Arena) -> Poses {
-    let players = (0..arena.config().players).filter_map(|index| arena.player(index));
+    let players = (0..arena.character_count()).filter_map(|index| arena.player(index));
     let bodies = players.flat_map(|player| player.state.bodies.iter().map(|b| (b.position, b.rotation)));
-    bodies.chain(arena.crates().map(|(_, at, rotation)| (at, rotation))).collect()
+    bodies.chain(arena.props().map(|(_, motion)| (motion.position, motion.rotation))).collect()
 }

@@ -1,4 +1,4 @@
-//! The demo in a browser: the arena of `lockstep`, drawn by the renderer of `viewer`, steered by the page.
+//! The demo in a browser: the playground of `lockstep`, drawn by the renderer of `viewer`, steered by the page.
 //!
 //! The page owns the clock, the devices and all text. What it hands in is a pad and a time; what it gets is a picture and
 //! a state. Nothing in here reads a clock.
@@ -6,7 +6,7 @@
 mod game;
 mod stage;
 
-use lockstep::SHOVE_BUTTON;
+use lockstep::{ArenaConfig, ArenaScene, SHOVE_BUTTON};
 use policy_core::{Button, Buttons, GamepadState};
 use wasm_bindgen::prelude::*;
 
@@ -26,7 +26,8 @@ pub struct Demo {
 
 #[wasm_bindgen]
 impl Demo {
-    /// Opens the canvas and makes the world. `pack` and `mesh` are the files that the page has fetched.
+    /// Opens the canvas and makes the world: the playground, or flat ground with crates. `pack` and `mesh` are the files that
+    /// the page has fetched.
     ///
     /// # Errors
     /// When nothing can be drawn with, or a file is no pack or mesh.
@@ -35,8 +36,11 @@ impl Demo {
         pack: Vec<u8>,
         mesh: Vec<u8>,
         players: usize,
+        flat: bool,
     ) -> Result<Demo, JsError> {
-        let game = Game::new(pack, players)?;
+        let chosen = ArenaConfig { players, ..ArenaConfig::default() };
+        let scene = if flat { chosen.scene } else { ArenaScene::Playground };
+        let game = Game::new(pack, ArenaConfig { scene, ..chosen })?;
         let stage = Stage::open(canvas, &game, &mesh).await?;
         Ok(Self { game, stage })
     }
@@ -112,6 +116,26 @@ impl Demo {
     /// What the player's character does, in a few words.
     pub fn doing(&self) -> String {
         self.game.doing()
+    }
+
+    /// Clock and falls of the course, in a few words.
+    pub fn course(&self) -> String {
+        self.game.course()
+    }
+
+    /// Seconds and falls of a run over the course that is done; empty before.
+    pub fn finished(&self) -> Vec<f32> {
+        self.game.finished().map_or(Vec::new(), |(secs, falls)| vec![secs, falls as f32])
+    }
+
+    /// Names of the policies.
+    pub fn policies(&self) -> Vec<String> {
+        self.game.pack().graph().nodes().iter().map(|node| node.name.replace('_', " ")).collect()
+    }
+
+    /// Weight of each of them in what the player's character does.
+    pub fn weights(&self) -> Vec<f32> {
+        self.game.weights()
     }
 
     /// Begins anew, under the fixed input of 20 s when `script` is true.

@@ -2,21 +2,20 @@
 
 use std::sync::Arc;
 
-use glam::{Mat4, Vec3};
-use physics_rapier::{Character, Model, Pose, PropShape};
+use physics_rapier::{Character, Model, Pose};
 use policy_core::{CharacterState, Heading};
 use viewer::camera::Camera;
 use viewer::gpu::Gpu;
 use viewer::mesh::{Rig, SkinnedMesh};
-use viewer::render::{Appearance, Figure, Marker, RenderConfig, Renderer, Scene, Solid};
+use viewer::render::{Appearance, Figure, RenderConfig, Renderer, Scene};
+use viewer::things;
 use wasm_bindgen::JsError;
 
 use crate::game::Game;
 
-/// Clothes of the players, and of the crates.
+/// Clothes of the characters.
 const TINTS: [[f32; 4]; 4] =
     [[0.0; 4], [0.12, 0.42, 0.78, 0.9], [0.16, 0.55, 0.30, 0.9], [0.75, 0.35, 0.12, 0.9]];
-const CRATE: [f32; 4] = [0.62, 0.42, 0.22, 1.0];
 
 pub struct Stage {
     gpu: Gpu,
@@ -134,26 +133,27 @@ impl Stage {
         scene.focus = scene.view.target.with_z(0.0);
         scene.figures.clear();
         scene.things.clear();
+        scene.markers.clear();
         let poses = game.poses();
         let bodies = game.pack().skeleton().body_count();
-        let players = game.arena().config().players;
-        let (characters, crates) = poses.split_at(players * bodies);
+        let arena = game.arena();
+        let (characters, props) = poses.split_at(arena.character_count() * bodies);
         for (index, own) in characters.chunks_exact(bodies).enumerate() {
             scene.figures.push(Figure {
                 positions: own.iter().map(|pose| pose.0).collect(),
                 rotations: own.iter().map(|pose| pose.1).collect(),
                 tint: TINTS[index % TINTS.len()],
-                ground: 0.0,
+                ground: arena.player(index).map_or(0.0, |player| player.state.ground_height),
                 slope: [0.0; 2],
             });
         }
-        for (&(at, rotation), (shape, ..)) in crates.iter().zip(game.arena().crates()) {
-            let (solid, half) = match shape {
-                PropShape::Box { half_extents } => (Solid::Cube, Vec3::from_array(half_extents)),
-                PropShape::Ball { radius } => (Solid::Ball, Vec3::splat(radius)),
-            };
-            let place = Mat4::from_scale_rotation_translation(half, rotation, at);
-            scene.things.push(Marker { solid, place, colour: CRATE });
+        things::fixtures(scene, arena.layout());
+        for (&pose, (placed, _)) in props.iter().zip(arena.props()) {
+            let anchor = things::anchor_of(placed.joint.as_ref());
+            things::prop(scene, &placed.prop.solid, pose, placed.paint, anchor);
+        }
+        if let Some(race) = arena.race(0) {
+            things::checkpoints(scene, arena.layout(), race);
         }
     }
 }

@@ -39,6 +39,8 @@ pub struct Training {
     envs: VecEnv,
     rollout: Rollout,
     discriminator_inputs: Vec<f32>,
+    /// How far each row's character had to turn, see [`RewardTerms::turning`].
+    turning: Vec<f32>,
     model: Model,
     scaling: ActionScaling,
 }
@@ -84,6 +86,7 @@ impl Training {
         Self {
             rollout: Rollout::new(shape, (inputs, context.critic_inputs()), actions),
             discriminator_inputs: vec![0.0; shape.0 * shape.1 * scored],
+            turning: vec![0.0; shape.0 * shape.1],
             samples: 0,
             phase: None,
             learner,
@@ -228,9 +231,13 @@ impl Training {
             self.rollout.record(step, self.envs.ends(), &self.envs.inputs_after);
             let at = self.rollout.edge[rows.clone()].iter().zip(&self.rollout.blend[rows.clone()]);
             let rewards = self.rollout.rewards[rows].iter_mut().zip(self.envs.terms());
-            for (((reward, terms), end), (edge, t)) in rewards.zip(self.envs.ends()).zip(at) {
-                let share = task_share(config, graph, graph.position_of(*edge, *t));
+            let turning = self.turning[step * n..].iter_mut();
+            for ((((reward, terms), end), (edge, t)), turning) in
+                rewards.zip(self.envs.ends()).zip(at).zip(turning)
+            {
+                let share = task_share(config, graph, graph.position_of(*edge, *t), terms.turning);
                 *reward = reward_of(config, share, terms, *end);
+                *turning = terms.turning;
             }
         }
         self.rollout.last_critic_inputs.copy_from_slice(&self.envs.inputs);
@@ -244,20 +251,31 @@ impl Training {
         let positions = (&self.rollout.edge[..], &self.rollout.blend[..]);
         let style = self.discriminators.style(graph, positions, &self.discriminator_inputs);
         let at = positions.0.iter().zip(positions.1).map(|(edge, t)| graph.position_of(*edge, *t));
-        // Trackers of skills trained together get the tracking reward beside the others.
-        let together = config.reward.tracking_share > 0.0;
-        let tracking = if together { 0.0 } else { config.reward.tracking_weight };
-        for ((reward, style), position) in self.rollout.rewards.iter_mut().zip(style).zip(at) {
-            *reward += (1.0 - task_share(config, graph, position) - tracking) * style;
+        let tracking = tracking_share(config);
+        let rows = self.rollout.rewards.iter_mut().zip(style).zip(at.zip(&self.turning));
+        for ((reward, style), (position, turning)) in rows {
+            *reward += (1.0 - task_share(config, graph, position, *turning) - tracking) * style;
         }
         let mean = style.iter().sum::<f32>() / style.len() as f32;
         (mean, self.discriminators.learn(graph, positions, &self.discriminator_inputs))
     }
 }
 
-/// Weight of the task reward at a position.
-fn task_share(config: &EnvironmentConfig, graph: &TrainingGraph, position: GraphPosition) -> f32 {
-    config.reward.task_weight * graph.task(position)
+/// Weight of the task reward at a position. A character that turns gives a part of the style's.
+fn task_share(
+    config: &EnvironmentConfig,
+    graph: &TrainingGraph,
+    position: GraphPosition,
+    turning: f32,
+) -> f32 {
+    let share = config.reward.task_weight * graph.task(position);
+    let style = 1.0 - share - tracking_share(config);
+    share + turning * (1.0 - config.reward.turning_style_factor) * style
+}
+
+/// Weight that the tracking reward takes from the others. Trackers of skills trained together get it beside them.
+fn tracking_share(config: &EnvironmentConfig) -> f32 {
+    if config.reward.tracking_share > 0.0 { 0.0 } else { config.reward.tracking_weight }
 }
 
 /// Reward of a tick, without that for style.

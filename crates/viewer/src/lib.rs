@@ -1,6 +1,6 @@
 //! The demo: draws characters, reads pad, keyboard and mouse, and shows what the policies do.
 //!
-//! Without the feature `native` there is what draws: [`render`], [`mesh`], [`camera`] and [`gpu`]. The page in `web/` is made
+//! Without the feature `native` there is what draws: [`render`], [`mesh`], [`camera`], [`things`] and [`gpu`]. The page in `web/` is made
 //! of these.
 
 #[cfg(feature = "native")]
@@ -46,5 +46,6 @@ pub mod signals;
 pub mod sim;
 #[cfg(feature = "native")]
 pub mod text;
+pub mod things;
 #[cfg(feature = "native")]
 pub mod window;

@@ -1,7 +1,5 @@
 //! Sets the scene: what of the world is drawn, and how. Reads the simulation, changes nothing.
 
-mod things;
-
 use std::collections::VecDeque;
 
 use glam::{Mat4, Quat, Vec2, Vec3};
@@ -10,6 +8,7 @@ use physics_bridge::{BodyPoses, HeightField, ShapeKind};
 use crate::camera::Camera;
 use crate::render::{Figure, GroundGrid, Marker, Scene, Solid};
 use crate::sim::Simulation;
+use crate::things::{self, ring};
 
 /// What is shown besides the characters.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
@@ -113,7 +112,11 @@ pub fn set_scene(
     scene.ribbons.clear();
     scene.hide_figures = shown.collision_shapes;
     if let Some(shared) = sim.shared() {
-        things::set(scene, shared, alpha);
+        things::fixtures(scene, shared.scene());
+        for piece in shared.pieces() {
+            things::prop(scene, &piece.solid, piece.pose(alpha), piece.paint, piece.anchor);
+        }
+        things::checkpoints(scene, shared.scene(), shared.race());
     }
     for index in 0..sim.characters().len() {
         let figure = figure(sim, sim.poses(index, alpha), tint(index));
@@ -191,12 +194,6 @@ fn target(scene: &mut Scene, sim: &Simulation) {
     let place =
         Mat4::from_scale_rotation_translation(Vec3::new(0.05, 0.05, 0.14), turn, ground + Vec3::Z * 0.32);
     scene.markers.push(Marker { solid: Solid::Cone, place, colour: TARGET_COLOUR });
-}
-
-fn ring(scene: &mut Scene, centre: Vec3, radius: f32, colour: [f32; 4]) {
-    let scale = Vec3::new(radius, radius, 1.0);
-    let place = Mat4::from_scale_rotation_translation(scale, Quat::IDENTITY, centre);
-    scene.markers.push(Marker { solid: Solid::Ring, place, colour });
 }
 
 fn collision_shapes(scene: &mut Scene, sim: &Simulation, figure: &Figure, colour: [f32; 4]) {

@@ -36,7 +36,8 @@ const RULES: &[Rule] = &[
     rule("files", &[], &[]),
     rule("pca", &[], &[]),
     rule("replay", &["policy-core"], &[]),
-    rule("lockstep", &["policy-core", "physics-rapier", "replay"], &[]),
+    rule("playground", &["policy-core", "random"], &[]),
+    rule("lockstep", &["policy-core", "physics-rapier", "playground", "replay"], &[]),
     rule("rollback", &["lockstep"], &[]),
     rule("physics", &["policy-core", "physics-bridge", "physics-rapier"], &[]),
     rule("random", &["policy-core"], &["physics-bridge"]),
@@ -56,6 +57,7 @@ const RULES: &[Rule] = &[
             "policy-space-gamepad",
             "files",
             "pca",
+            "playground",
             "random",
             "replay",
         ],
@@ -111,6 +113,7 @@ const OWNED: &[Owned] = &[
 /// Crates of the workspace below which, at any depth, none of these may lie.
 const NEVER_BELOW: &[(&str, &[&str])] = &[
     ("xtask", &["mujoco-rs"]),
+    ("playground", &["mujoco-rs", "rapier3d", "wgpu", "winit"]),
     ("lockstep", &["mujoco-rs", "wgpu", "winit", "hidapi", "gilrs", "ggrs"]),
     ("policy-core", &["mujoco-rs", "hidapi", "gilrs", "wgpu", "winit", "egui", "gltf", "bevy"]),
     ("evaluation", &["wgpu", "winit", "egui", "gemm"]),

@@ -29,6 +29,8 @@ pub struct RewardConfig {
     pub speed_scale_mps: f32,
     /// True to command the speed of the first gait as soon as the stick asks for it, while the coordinate still leaves standing.
     pub prompt_start: bool,
+    /// Factor on the weight of the style reward while the target lies far aside; the task reward gets the rest. No clip turns.
+    pub turning_style_factor: f32,
     /// Weight of the squared sideways speed beside the squared error of the speed.
     pub sideways_weight: f32,
     /// Share of the speed reward that falls evenly with the velocity error, from 1 at none to 0 at twice the commanded speed.
@@ -60,6 +62,7 @@ impl Default for RewardConfig {
             task_weight: 0.5,
             speed_scale_mps: 0.6,
             prompt_start: false,
+            turning_style_factor: 1.0,
             sideways_weight: 0.25,
             linear_speed_share: 0.0,
             strict_facing_share: 0.0,
@@ -87,6 +90,8 @@ pub struct RewardTerms {
     pub commanded_mps: f32,
     /// How fast the feet slip, see [`foot_slip_mps`].
     pub foot_slip_mps: f32,
+    /// How far it has to turn to face the target: 0 ahead, 1 far aside.
+    pub turning: f32,
 }
 
 impl RewardTerms {
@@ -136,6 +141,9 @@ pub struct Pace {
 /// Angle to the target at which the strict reward for facing it has fallen to 1/e, radians.
 const STRICT_FACING_RADIANS: f32 = 0.4;
 
+/// Angles to the target between which a character turns ever more, radians.
+const TURNING_RADIANS: [f32; 2] = [0.4, 1.2];
+
 /// Reward for going to `target` and facing it. `velocity` is that of the root over the tick, metres per second.
 ///
 /// `0.4 exp(-2 d) + 0.3 exp(-2 d / 9) + 0.3 facing` with `d = (e^2 + w s^2) / scale^2`, speed error `e`, sideways speed `s` and
@@ -173,7 +181,15 @@ pub fn target_reward(
     let off = (velocity - commanded_mps * direction).length() / (2.0 * pace.speed_mps.max(1.0));
     let linear = 0.7 * (1.0 - off).max(0.0);
     let speed = bells + config.linear_speed_share * (linear - bells);
-    RewardTerms { task: speed + 0.3 * facing, speed_mps: along, commanded_mps, ..RewardTerms::default() }
+    let [begins, fully] = TURNING_RADIANS;
+    let turning = near * ((aside.abs() - begins) / (fully - begins)).clamp(0.0, 1.0);
+    RewardTerms {
+        task: speed + 0.3 * facing,
+        speed_mps: along,
+        commanded_mps,
+        turning,
+        ..RewardTerms::default()
+    }
 }
 
 /// Speed of the root up to which standing up is at ease, metres per second.

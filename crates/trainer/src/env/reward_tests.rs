@@ -21,6 +21,14 @@ fn body(name: &str) -> BodyId {
     Skeleton::humanoid().body_named(name).unwrap()
 }
 
+#[test]
+fn a_target_far_aside_is_a_turn_and_one_close_by_is_none() {
+    let turning =
+        |angle: f32, metres: f32| at(Vec2::ZERO, Vec2::from_angle(angle) * metres, [1.25, 0.6]).turning;
+    assert_eq!([turning(0.3, 5.0), turning(-0.8, 5.0), turning(3.0, 5.0)], [0.0, 0.5, 1.0]);
+    assert_eq!(turning(3.0, 0.0), 0.0);
+}
+
 const AHEAD: Vec2 = Vec2::new(5.0, 0.0);
 
 #[test]

@@ -1,9 +1,10 @@
 //! The props as they are drawn: where they were at the last two ticks, and what holds them.
 
 use glam::{Quat, Vec3};
-use physics_bridge::{Joint, Motion, PropHandle, Solid, WorldEdit, WorldError};
+use physics_bridge::{Motion, PropHandle, Solid, WorldEdit, WorldError};
 
 use super::{LooseKind, SharedWorld};
+use crate::things::anchor_of;
 use playground::{Paint, Playground};
 
 /// A prop of the scene, or one that was thrown or put there.
@@ -50,10 +51,7 @@ pub(super) fn add(edit: &mut WorldEdit<'_>, scene: &Playground) -> Result<Vec<Pi
         piece.of_scene = Some(index);
         if let Some(joint) = placed.joint {
             edit.join(handle, None, joint)?;
-            piece.anchor = match joint {
-                Joint::Hinge { anchor, .. } | Joint::Ball { anchor, .. } => Some(anchor),
-                _ => None,
-            };
+            piece.anchor = anchor_of(Some(&joint));
         }
         pieces.push(piece);
     }

@@ -1,12 +1,10 @@
-//! Fixtures, props and checkpoints of a shared world as things to draw.
+//! Fixtures, props and checkpoints of a playground as things to draw.
 
 use glam::{Mat4, Quat, Vec3};
-use physics_bridge::{FixtureShape, Solid as Shape};
+use policy_core::contract::{FixtureShape, Joint, Solid as Shape};
 
-use super::ring;
 use crate::render::{Marker, Scene, Solid};
-use crate::sim::SharedWorld;
-use playground::{Paint, RaceState};
+use playground::{Paint, Playground, Race, RaceState};
 
 /// Marks of cubes: their edges.
 const EDGES: f32 = 1.0;
@@ -19,24 +17,33 @@ const BEACON_M: f32 = 2.6;
 const NEXT_COLOUR: [f32; 3] = [0.98, 0.75, 0.10];
 const LATER_COLOUR: [f32; 4] = [0.75, 0.78, 0.82, 0.55];
 
-/// Adds all that stands in a shared world.
-pub(super) fn set(scene: &mut Scene, shared: &SharedWorld, alpha: f32) {
-    for painted in &shared.scene().fixtures {
+/// Adds what never moves.
+pub fn fixtures(scene: &mut Scene, layout: &Playground) {
+    for painted in &layout.fixtures {
         let fixture = &painted.fixture;
         if let FixtureShape::Solid(shape) = &fixture.shape {
             add(scene, shape, (fixture.position, fixture.rotation), painted.paint);
         }
     }
-    for piece in shared.pieces() {
-        let pose = piece.pose(alpha);
-        add(scene, &piece.solid, pose, piece.paint);
-        if let Some(anchor) = piece.anchor
-            && anchor.distance(pose.0) > reach_of(&piece.solid)
-        {
-            rod(scene, anchor, pose.0);
-        }
+}
+
+/// Adds a prop where it is, and a rod to the point that it hangs on, metres, if it hangs far from it.
+pub fn prop(scene: &mut Scene, shape: &Shape, pose: (Vec3, Quat), paint: Paint, anchor: Option<Vec3>) {
+    add(scene, shape, pose, paint);
+    if let Some(anchor) = anchor
+        && anchor.distance(pose.0) > reach_of(shape)
+    {
+        rod(scene, anchor, pose.0);
     }
-    checkpoints(scene, shared);
+}
+
+/// The point in the world that a prop hangs on or turns about, metres.
+#[must_use]
+pub fn anchor_of(joint: Option<&Joint>) -> Option<Vec3> {
+    match joint {
+        Some(Joint::Hinge { anchor, .. } | Joint::Ball { anchor, .. }) => Some(*anchor),
+        _ => None,
+    }
 }
 
 fn add(scene: &mut Scene, shape: &Shape, (position, rotation): (Vec3, Quat), paint: Paint) {
@@ -58,7 +65,7 @@ fn add(scene: &mut Scene, shape: &Shape, (position, rotation): (Vec3, Quat), pai
         }
         Shape::Cuboid { half_extents } => push(Solid::Cube, half_extents, 0.0, EDGES),
         // No scene has hulls.
-        _ => {}
+        Shape::Hull { .. } => {}
     }
 }
 
@@ -69,7 +76,7 @@ fn reach_of(shape: &Shape) -> f32 {
         Shape::Capsule { radius, half_length } => radius + half_length,
         Shape::Cylinder { radius, half_length } => radius.hypot(half_length),
         Shape::Cuboid { half_extents } => half_extents.length(),
-        _ => f32::INFINITY,
+        Shape::Hull { .. } => f32::INFINITY,
     }
 }
 
@@ -83,15 +90,14 @@ fn rod(scene: &mut Scene, from: Vec3, to: Vec3) {
 }
 
 /// A ring on the ground for each checkpoint, and a light above the next.
-fn checkpoints(scene: &mut Scene, shared: &SharedWorld) {
-    let (race, playground) = (shared.race(), shared.scene());
-    for (index, checkpoint) in playground.checkpoints.iter().enumerate() {
+pub fn checkpoints(scene: &mut Scene, layout: &Playground, race: &Race) {
+    for (index, checkpoint) in layout.checkpoints.iter().enumerate() {
         let is_next = index == race.next();
         // Those that are done are left out.
         if race.state() == RaceState::Running && index < race.next() {
             continue;
         }
-        let ground = playground.height_at(checkpoint.at, 1.0) + 0.02;
+        let ground = layout.height_at(checkpoint.at, 1.0) + 0.02;
         let [r, g, b] = NEXT_COLOUR;
         let colour = if is_next { [r, g, b, 0.9] } else { LATER_COLOUR };
         ring(scene, checkpoint.at.extend(ground), checkpoint.radius, colour);
@@ -117,4 +123,11 @@ fn colour(paint: Paint) -> [f32; 3] {
         Paint::Blue => [0.09, 0.25, 0.52],
         Paint::Violet => [0.30, 0.16, 0.44],
     }
+}
+
+/// Adds a ring that lies about a point, metres.
+pub(crate) fn ring(scene: &mut Scene, centre: Vec3, radius: f32, colour: [f32; 4]) {
+    let scale = Vec3::new(radius, radius, 1.0);
+    let place = Mat4::from_scale_rotation_translation(scale, Quat::IDENTITY, centre);
+    scene.markers.push(Marker { solid: Solid::Ring, place, colour });
 }
