@@ -1,6 +1,6 @@
 //! A [`ControllerState`] as bytes, little-endian, of one length for each pack.
 //!
-//! Order: version, report, fall timers, frame history, resting blend, interrupted skill, joint targets, hand-over, course. An
+//! The side of a turn follows from the target in the report. Order: version, report, fall timers, frame history, resting blend, interrupted skill, joint targets, hand-over, course. An
 //! absent value is a zero flag and zeros, so that equal states give equal bytes.
 
 use crate::blend::{Blend, BlendTerm, MAX_BLEND_TERMS};
@@ -12,6 +12,7 @@ use crate::pack::CharacterPack;
 use crate::path::GraphPosition;
 use crate::report::{StateFault, TickReport};
 use crate::skill::{Refusal, SkillEnd, SkillProgress};
+use crate::steering::side_of;
 
 /// First four bytes: `PSS` and the version.
 const VERSION: u32 = u32::from_le_bytes(*b"PSS\x02");
@@ -90,8 +91,10 @@ impl ControllerState {
         r.floats(&mut self.targets);
         r.floats(&mut self.handover_from);
         (self.handover_secs, self.pending_secs) = (r.float(), r.float());
-        (self.steering.velocity.x, self.steering.velocity.y, self.steering.trim) =
-            (r.float(), r.float(), r.float());
+        let steering = &mut self.steering;
+        (steering.velocity.x, steering.velocity.y) = (r.float(), r.float());
+        steering.trim = r.float();
+        steering.side = side_of(self.report.target);
         Ok(())
     }
 }

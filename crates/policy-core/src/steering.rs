@@ -23,8 +23,14 @@ const LARGEST_RADIANS: f32 = 0.5 * PI;
 /// before it turns.
 const BEHIND_RADIANS: f32 = 0.75 * PI;
 
-/// Rate of rotation above which a turn continues to its side, radians a second.
-const TURNING_RADIANS_PER_SECOND: f32 = 0.5;
+/// A target within this of that angle was shown as one behind, radians.
+const SHOWN_RADIANS: f32 = 1e-3;
+
+/// Angle off the heading from which both sides are as near, radians. There a turn goes to the side to which the body turns already.
+const EITHER_RADIANS: f32 = 0.92 * PI;
+
+/// A body that turns slower than this turns to no side, radians a second.
+const LEAST_TURNING: f32 = 0.1;
 
 /// Corrects the target that a policy sees by the course: the direction in which the root moves.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -52,6 +58,9 @@ pub struct SteeringState {
     pub(crate) velocity: Vec2,
     /// Angle that is added against drift, radians.
     pub(crate) trim: f32,
+    /// The side to which it turns about, positive to the left; 0 while the target is not behind. A hip that swings in a walk must
+    /// not change it.
+    pub(crate) side: f32,
 }
 
 impl Steering {
@@ -81,14 +90,29 @@ impl Steering {
         }
         let largest = libm::fabsf(off_heading).max(LARGEST_RADIANS);
         let asked = if libm::fabsf(off_heading) > BEHIND_RADIANS {
-            let turning = root.angular_velocity.z;
-            let continues = libm::fabsf(turning) > TURNING_RADIANS_PER_SECOND;
-            BEHIND_RADIANS.copysign(if continues { turning } else { off_heading })
+            if memory.side == 0.0 {
+                let turning = root.angular_velocity.z;
+                let continues =
+                    libm::fabsf(off_heading) > EITHER_RADIANS && libm::fabsf(turning) > LEAST_TURNING;
+                memory.side = 1.0_f32.copysign(if continues { turning } else { off_heading });
+            }
+            BEHIND_RADIANS * memory.side
         } else {
+            memory.side = 0.0;
             (off_heading + self.lead * error + memory.trim).clamp(-largest, largest)
         };
         let turned = Heading::from_angle(asked - off_heading);
         root.position.truncate() + turned.world_from_heading_2d(to_target)
+    }
+}
+
+/// The side of a turn of which this is the target that the policy saw: a target that lies behind is shown at one angle exactly.
+pub(crate) fn side_of([x, y]: [f32; 2]) -> f32 {
+    let angle = libm::atan2f(y, x);
+    if libm::fabsf(libm::fabsf(angle) - BEHIND_RADIANS) < SHOWN_RADIANS {
+        1.0_f32.copysign(angle)
+    } else {
+        0.0
     }
 }
 

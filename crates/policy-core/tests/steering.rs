@@ -93,6 +93,19 @@ fn what_lies_behind_is_asked_for_at_the_side_to_which_the_body_turns() {
 }
 
 #[test]
+fn a_hip_that_swings_does_not_change_the_side_of_a_turn() {
+    let mut controller = controller(Some(Steering::default()));
+    let mut state = body(0.0, 0.0, 1.2);
+    for (tick, target) in [3.1, -3.1, 3.0, -2.9, 2.6].into_iter().enumerate() {
+        state.bodies[0].angular_velocity.z = if tick % 2 == 0 { -1.0 } else { 1.0 };
+        let found = asked(&mut controller, &state, target, 1);
+        assert!((found + 0.75 * PI).abs() < 1e-3, "{found} in tick {tick}");
+    }
+    assert!(asked(&mut controller, &state, 1.0, 1) > 0.0, "no longer behind");
+    assert!(asked(&mut controller, &state, 2.6, 1) > 0.0, "and then to the nearer side");
+}
+
+#[test]
 fn the_trim_is_limited_and_forgotten_without_a_target() {
     let limits = Steering { lead: 0.0, trim_per_second: 5.0, trim_limit_radians: 0.2, ..Steering::default() };
     let mut controller = controller(Some(limits));

@@ -1,4 +1,5 @@
 use policy_core::Skeleton;
+use policy_core::training::TARGET_RANGE_METRES;
 
 use super::super::config::EnvironmentConfig;
 use super::super::graph::GraphNode;
@@ -194,16 +195,16 @@ fn the_position_follows_what_is_asked_no_faster_than_an_edge_allows() {
 fn an_episode_that_starts_at_a_node_rests_there_or_goes_elsewhere() {
     let config = CommandConfig { sweep_share: 1.0, jump_share: 0.0, ..CommandConfig::default() };
     let (graph, mut rng) = (edge(), Rng::new(9, 1));
-    let (mut resting, mut at) = (0, [0; 2]);
+    let (mut resting, mut counts) = (0, [0; 2]);
     for _ in 0..200 {
         let mut command = Command::start(&config, &graph, true, &mut rng);
-        at[command.position.as_node().expect("at a node").index()] += 1;
+        counts[command.position.as_node().expect("at a node").index()] += 1;
         let before = command.position;
         (0..30).for_each(|_| command.advance(&config, &graph, &at(Vec2::ZERO), UP, &mut rng));
         resting += usize::from(command.position == before);
         assert!(!command.sweeps);
     }
-    assert!((100..180).contains(&resting) && at.iter().all(|count| *count > 30), "{resting} {at:?}");
+    assert!((100..180).contains(&resting) && counts.iter().all(|count| *count > 30), "{resting} {counts:?}");
 }
 
 #[test]

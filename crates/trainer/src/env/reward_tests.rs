@@ -25,7 +25,8 @@ fn body(name: &str) -> BodyId {
 fn a_target_far_aside_is_a_turn_and_one_close_by_is_none() {
     let turning =
         |angle: f32, metres: f32| at(Vec2::ZERO, Vec2::from_angle(angle) * metres, [1.25, 0.6]).turning;
-    assert_eq!([turning(0.3, 5.0), turning(-0.8, 5.0), turning(3.0, 5.0)], [0.0, 0.5, 1.0]);
+    assert_eq!([turning(0.3, 5.0), turning(3.0, 5.0)], [0.0, 1.0]);
+    assert!((turning(-0.8, 5.0) - 0.5).abs() < 1e-4);
     assert_eq!(turning(3.0, 0.0), 0.0);
 }
 
