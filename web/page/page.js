@@ -104,6 +104,7 @@ function frame(now) {
     const mode = demo.mode();
     input = [pad(), buttons()];
     const ticks = demo.advance(secs, ...input);
+    if (ticks > 0) tapped.clear();
     if (ticks > 0) told.physicsMs += 0.1 * ((performance.now() - began) / ticks - told.physicsMs);
     if (mode !== demo.mode()) note(mode === 'playing' ? 'The replay is over: every state was the recorded one.' : 'The script is over.');
   } catch (error) {
@@ -111,7 +112,8 @@ function frame(now) {
     note(`The replay stopped: ${error.message ?? error}`);
   }
   const drawn = demo.draw();
-  if (frames % 6 === 0) { showWeights(); tickPrompts(); }
+  tickPrompts();
+  if (frames % 6 === 0) showWeights();
   if (drawn && told.firstFrameMs === null) told.firstFrameMs = performance.now();
   frames += 1;
   if (now - frameStart > 1000) {
@@ -214,9 +216,12 @@ addEventListener('resize', fit);
 // ---- Keyboard, mouse, touch, pads
 
 const held = new Set();
+/** Keys that went down since the last frame: a tap between two frames of a slow machine counts. */
+const tapped = new Set();
 addEventListener('keydown', (event) => {
   if (event.ctrlKey || event.metaKey || event.altKey) return;
   held.add(event.code);
+  tapped.add(event.code);
   if (event.code.startsWith('Arrow') || event.code === 'Space') event.preventDefault();
   if (event.code === 'KeyR' && !event.repeat) restart(false);
 });
@@ -254,7 +259,7 @@ function pad() {
 
 function buttons() {
   let bits = touch.bits;
-  for (const [code, bit] of Object.entries(keyBits)) if (held.has(code)) bits |= bit;
+  for (const [code, bit] of Object.entries(keyBits)) if (held.has(code) || tapped.has(code)) bits |= bit;
   const found = device();
   if (found) for (const [index, bit] of padBits) if (found.buttons[index]?.pressed) bits |= bit;
   return bits;

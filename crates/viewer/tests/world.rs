@@ -176,7 +176,8 @@ fn on_ice_the_demo_goes_on_and_starts_again_after_a_failure() {
     for again in [ViewerCommand::ResetAfterFailure, ViewerCommand::RewindAfterFailure] {
         for tick in 0..300 {
             app.pad.state.buttons.set(SHOVE_BUTTON, tick % 90 == 60);
-            assert!(app.tick().is_empty(), "it diverged in tick {tick}");
+            let diverged = app.tick();
+            assert!(diverged.is_empty(), "tick {tick}: {}", diverged[0].what);
         }
         let torso = torso(&app.sim);
         app.sim.character_mut(0).impulse(torso, glam::Vec3::Y * 9e5).unwrap();

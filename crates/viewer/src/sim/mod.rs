@@ -90,7 +90,7 @@ const SHOVE_SECS: f32 = 0.2;
 const SHOVED_BELOW_MPS: f32 = 5.0;
 
 /// Least factor on friction: ice. Contacts of less, down to none, make the physics diverge.
-pub const LEAST_FRICTION: f32 = 0.01;
+pub const LEAST_FRICTION: f32 = 0.05;
 
 /// How the characters of a skeleton are shoved.
 #[derive(Clone, Copy, Debug, PartialEq)]
