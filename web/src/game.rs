@@ -115,7 +115,9 @@ impl Game {
         let falls = if falls == 1 { "1 fall".to_owned() } else { format!("{falls} falls") };
         match race.state() {
             RaceState::Waiting => "Course: go to the light".into(),
-            RaceState::Running => format!("Course: {secs:.1} s, {falls}, checkpoint {} of {count}", race.next() + 1),
+            RaceState::Running => {
+                format!("Course: {secs:.1} s, {falls}, checkpoint {} of {count}", race.next() + 1)
+            }
             RaceState::Finished => format!("Course done: {secs:.1} s, {falls}"),
         }
     }
