@@ -149,7 +149,7 @@ impl Stage {
         }
         things::fixtures(scene, arena.layout());
         for (&pose, (placed, _)) in props.iter().zip(arena.props()) {
-            let anchor = things::anchor_of(placed.joint.as_ref());
+            let anchor = placed.joint.and_then(|joint| joint.anchor());
             things::prop(scene, &placed.prop.solid, pose, placed.paint, anchor);
         }
         if let Some(race) = arena.race(0) {

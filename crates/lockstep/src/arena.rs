@@ -3,15 +3,14 @@
 use std::sync::Arc;
 
 use physics_rapier::{Model, Motion, World};
-use playground::{PlacedProp, Playground, Race, WanderPath, Wanderer, swing_force};
-use policy_core::contract::Joint;
+use playground::{PlacedProp, Playground, Race, WanderPath, Wanderer};
 use policy_core::glam::Vec2;
 use policy_core::{Button, CharacterPack, Heading};
 use replay::{Header, Pad, StateHash};
 
 use crate::error::ArenaError;
 use crate::player::{Player, PlayerView};
-use crate::scene::{ArenaConfig, motion_of};
+use crate::scene::ArenaConfig;
 
 /// Shoves every character, away from the camera of the player who presses it. That is also how a player falls to get up.
 pub const SHOVE_BUTTON: Button = Button::LeftShoulder;
@@ -61,7 +60,7 @@ impl Arena {
             players.push(player);
         }
         for placed in &layout.props {
-            let index = world.add_prop(&placed.prop, &motion_of(placed))?;
+            let index = world.add_prop(&placed.prop, &placed.start())?;
             if let Some(joint) = &placed.joint {
                 world.join(index, None, joint)?;
             }
@@ -211,13 +210,8 @@ impl Arena {
     /// Keeps pendulums at their height.
     fn drive_swings(&mut self) -> Result<(), ArenaError> {
         for (index, placed) in self.layout.props.iter().enumerate() {
-            let (Some(height), Some(Joint::Ball { anchor, .. } | Joint::Hinge { anchor, .. })) =
-                (placed.swing_m, placed.joint)
-            else {
-                continue;
-            };
-            let Some((_, Motion { position, velocity, .. })) = self.world.prop(index) else { continue };
-            if let Some(force) = swing_force(height, placed.prop.mass_kg, anchor, position, velocity) {
+            let motion = self.world.prop(index).map(|(_, motion)| motion);
+            if let Some(force) = motion.and_then(|motion| placed.swing_force(&motion)) {
                 self.world.push_prop(index, force)?;
             }
         }

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use physics_rapier::{Motion, Prop};
+use physics_rapier::Prop;
 use playground::{Paint, PlacedProp, Playground, Start};
 use policy_core::glam::{Quat, Vec2, Vec3};
 use replay::{Header, MOST_PLAYERS, StateHash};
@@ -17,7 +17,7 @@ const SPACING_M: f32 = 1.6;
 /// Length of a crate, metres, and its mass.
 const CRATE_M: f32 = 0.4;
 const CRATE_KG: f32 = 5.0;
-/// How far from the middle flat ground reaches, for who wants to know, metres.
+/// Half the length of the area of flat ground, metres. The ground itself has no end.
 const HALF_M: f32 = 50.0;
 
 /// Where an arena is.
@@ -130,9 +130,4 @@ fn crate_at(index: usize, seed: u32) -> Vec3 {
         (column as f32 - 1.5) * 1.2 + 0.6 * off(20),
         0.5 * CRATE_M,
     )
-}
-
-/// How a prop begins.
-pub(crate) fn motion_of(placed: &PlacedProp) -> Motion {
-    Motion { rotation: placed.rotation, ..Motion::at(placed.position) }
 }

@@ -24,6 +24,7 @@ use crate::model::Model;
 
 use self::fixture::Standing;
 pub use self::save::{WorldError, WorldSnapshot};
+pub(crate) use self::shape::of_heights;
 
 /// Most characters, props, fixtures or joints.
 const MOST: usize = 256;

@@ -27,11 +27,10 @@ mod wander;
 use std::sync::Arc;
 
 use glam::{Quat, Vec2, Vec3};
-use policy_core::contract::{Fixture, Joint, Prop};
+use policy_core::contract::{Fixture, Joint, Motion, Prop};
 
 pub use file::SceneFileError;
 pub use race::{Race, RaceEvent, RaceState};
-pub use swing::swing_force;
 pub use wander::{WanderPath, Wanderer, Wish};
 
 /// The text of the scene that ships.
@@ -79,6 +78,14 @@ pub struct PlacedProp {
     pub joint: Option<Joint>,
     /// It is driven to this height above its lowest point, metres: a pendulum that does not come to rest.
     pub swing_m: Option<f32>,
+}
+
+impl PlacedProp {
+    /// How it begins: at rest.
+    #[must_use]
+    pub fn start(&self) -> Motion {
+        Motion { rotation: self.rotation, ..Motion::at(self.position) }
+    }
 }
 
 /// Where a character starts.

@@ -14,7 +14,7 @@ mod push;
 mod settings;
 mod solid;
 
-pub use description_error::DescriptionError;
+pub use description_error::{DescriptionError, within};
 pub use fixture::{Fixture, FixtureShape, MAX_HEIGHTS, MAX_TRIANGLES, TRIANGLE_DEPTH_M};
 pub use height_field::{HeightField, HeightFieldError};
 pub use joint::{DAMPING_RANGE, Joint, ROPE_RANGE_M};

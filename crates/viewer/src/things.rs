@@ -1,7 +1,7 @@
 //! Fixtures, props and checkpoints of a playground as things to draw.
 
 use glam::{Mat4, Quat, Vec3};
-use policy_core::contract::{FixtureShape, Joint, Solid as Shape};
+use policy_core::contract::{FixtureShape, Solid as Shape};
 
 use crate::render::{Marker, Scene, Solid};
 use playground::{Paint, Playground, Race, RaceState};
@@ -34,15 +34,6 @@ pub fn prop(scene: &mut Scene, shape: &Shape, pose: (Vec3, Quat), paint: Paint, 
         && anchor.distance(pose.0) > reach_of(shape)
     {
         rod(scene, anchor, pose.0);
-    }
-}
-
-/// The point in the world that a prop hangs on or turns about, metres.
-#[must_use]
-pub fn anchor_of(joint: Option<&Joint>) -> Option<Vec3> {
-    match joint {
-        Some(Joint::Hinge { anchor, .. } | Joint::Ball { anchor, .. }) => Some(*anchor),
-        _ => None,
     }
 }
 

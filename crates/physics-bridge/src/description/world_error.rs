@@ -9,33 +9,11 @@ use super::model_error::ModelError;
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum WorldError {
-    /// A number is out of its range, or not a number.
-    #[error("expected {field} of {what} between {least} and {most}, found {found}")]
-    Range {
-        /// `a character`, `a grab` or `a ray`, for instance.
-        what: &'static str,
-        /// Name of the field.
-        field: &'static str,
-        /// Least.
-        least: f32,
-        /// Most.
-        most: f32,
-        /// Given.
-        found: f32,
-    },
     /// The handle is of something that was removed, or of another world.
     #[error("expected the handle of {what} that is in the world, found one of something that is not")]
     Stale {
         /// `a prop`, `a fixture`, `a joint`, `a character` or `a grab`.
         what: &'static str,
-    },
-    /// Too many of something.
-    #[error("expected at most {most} {what}, found more")]
-    TooMany {
-        /// What is counted.
-        what: &'static str,
-        /// Most.
-        most: usize,
     },
     /// A character runs at another rate than the world.
     #[error(
@@ -77,7 +55,7 @@ pub enum WorldError {
     /// A push that is out of its limits.
     #[error(transparent)]
     Push(#[from] PushError),
-    /// A prop, fixture or joint that can't be as described.
+    /// Something that can't be as described: a number out of its range, for instance.
     #[error(transparent)]
     Description(#[from] DescriptionError),
     /// A character's model can't be loaded.
@@ -89,18 +67,4 @@ pub enum WorldError {
         /// MuJoCo's words.
         message: String,
     },
-}
-
-/// Checks a number against its range.
-pub(crate) fn within(
-    what: &'static str,
-    field: &'static str,
-    found: f32,
-    [least, most]: [f32; 2],
-) -> Result<(), WorldError> {
-    if (least..=most).contains(&found) {
-        Ok(())
-    } else {
-        Err(WorldError::Range { what, field, least, most, found })
-    }
 }

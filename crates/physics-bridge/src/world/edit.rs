@@ -2,6 +2,7 @@
 
 use glam::{DQuat, DVec3};
 use policy_core::Heading;
+use policy_core::contract::{DescriptionError, Fixture, Joint, Motion, Prop};
 
 use super::World;
 use super::handle::{CharacterHandle, FixtureHandle, JointHandle, PropHandle};
@@ -9,9 +10,6 @@ use super::scene::{JointRecord, PropRecord, Rope, Scene};
 use super::stand::check_stand;
 use crate::description::model::Model;
 use crate::description::world_error::WorldError;
-use policy_core::contract::Fixture;
-use policy_core::contract::Joint;
-use policy_core::contract::{Motion, Prop};
 
 /// Most characters in a world.
 const MOST_CHARACTERS: usize = 1024;
@@ -262,7 +260,7 @@ impl WorldEdit<'_> {
     }
 
     fn at_most(&self, what: &'static str, found: usize, most: usize) -> Result<(), WorldError> {
-        if found < most { Ok(()) } else { Err(WorldError::TooMany { what, most }) }
+        if found < most { Ok(()) } else { Err(DescriptionError::TooMany { what, most }.into()) }
     }
 
     /// Where a prop is now, or will be when the edit is done; the identity for the world.

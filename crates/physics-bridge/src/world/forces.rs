@@ -5,13 +5,14 @@ use mujoco_rs::wrappers::mj_data::MjData;
 use mujoco_rs::wrappers::mj_model::MjModel;
 use policy_core::BodyId;
 use policy_core::contract::{
-    MAX_DISTANCE_M, MAX_FORCE_N, MAX_PUSHED_MPS, PushError, check_impulse, check_push,
+    DescriptionError, MAX_DISTANCE_M, MAX_FORCE_N, MAX_PUSHED_MPS, PushError, check_impulse, check_push,
+    within,
 };
 
 use super::World;
 use super::handle::{CharacterHandle, GrabHandle, Handle, PropHandle};
 use super::solids::{quat, vec3};
-use crate::description::world_error::{WorldError, within};
+use crate::description::world_error::WorldError;
 use crate::kinematics::velocity_at;
 
 /// Most grabs at a time.
@@ -196,7 +197,7 @@ impl World {
         within("a grab", "at", at.length(), [0.0, MAX_DISTANCE_M])?;
         within("a grab", "most_force_n", most_force_n, [f32::MIN_POSITIVE, MAX_FORCE_N])?;
         let free = self.forces.grabs.iter().position(Option::is_none);
-        let index = free.ok_or(WorldError::TooMany { what: "grabs", most: MAX_GRABS })?;
+        let index = free.ok_or(DescriptionError::TooMany { what: "grabs", most: MAX_GRABS })?;
         let target = at.as_dvec3();
         let offset = target - vec3(self.data.xpos()[body]);
         let point = quat(self.data.xquat()[body]).inverse() * offset;

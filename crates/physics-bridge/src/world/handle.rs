@@ -3,11 +3,10 @@
 use std::hash::{Hash, Hasher};
 use std::marker::PhantomData;
 
+use policy_core::contract::{Fixture, Joint, Prop};
+
 use crate::description::model::Model;
 use crate::description::world_error::WorldError;
-use policy_core::contract::Fixture;
-use policy_core::contract::Joint;
-use policy_core::contract::Prop;
 
 /// Names one thing in a [`World`](crate::World). `K` is what it was made of.
 pub struct Handle<K> {

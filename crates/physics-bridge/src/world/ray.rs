@@ -4,7 +4,7 @@ use glam::Vec3;
 use mujoco_rs::wrappers::fun::utility::mju_ray_geom;
 use mujoco_rs::wrappers::mj_data::MjData;
 use mujoco_rs::wrappers::mj_model::{MjModel, MjtGeomBase};
-use policy_core::contract::MAX_DISTANCE_M;
+use policy_core::contract::{MAX_DISTANCE_M, within};
 
 use super::World;
 use super::contact::{Part, part};
@@ -12,7 +12,7 @@ use super::forces::Movable;
 use super::places::Places;
 use super::solids::vec3;
 use crate::description::model::Model;
-use crate::description::world_error::{WorldError, within};
+use crate::description::world_error::WorldError;
 
 /// What a ray meets first. World space.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -2,12 +2,10 @@
 //! pointers and numbers, so an edit works on a copy and a failed edit leaves no trace.
 
 use glam::{DQuat, DVec3};
+use policy_core::contract::{Fixture, Joint, Prop};
 
 use super::handle::Slots;
 use crate::description::model::Model;
-use policy_core::contract::Fixture;
-use policy_core::contract::Joint;
-use policy_core::contract::Prop;
 
 /// Everything in a world.
 #[derive(Clone, Debug)]

@@ -4,12 +4,11 @@ use glam::{DQuat, DVec3, Vec3};
 use mujoco_rs::wrappers::mj_editing::{MjSpec, MjsBody, MjsGeom, SpecItem};
 use mujoco_rs::wrappers::mj_editing::{MjtLimited, MjtMeshInertia};
 use mujoco_rs::wrappers::mj_model::{MjtGeomBase, MjtJoint};
+use policy_core::contract::{Fixture, FixtureShape, Prop, Solid, TRIANGLE_DEPTH_M};
 
 use super::build::EVERYTHING;
 use super::places::{fixture_name, prop_name, rope_name};
 use super::scene::{Hold, HoldKind, JointRecord, PropRecord, Rope, Scene};
-use policy_core::contract::{Fixture, FixtureShape, TRIANGLE_DEPTH_M};
-use policy_core::contract::{Prop, Solid};
 
 /// How fast a free prop slows down by itself, 1/s: enough that a ball on a plane comes to rest.
 const DRAG: f64 = 0.005;

@@ -2,7 +2,7 @@
 
 use glam::{DQuat, DVec3, Quat, Vec3};
 use policy_core::Heading;
-use policy_core::contract::{MAX_DISTANCE_M, MAX_SPEED_MPS, Pose, ROOT_QPOS};
+use policy_core::contract::{Fixture, MAX_DISTANCE_M, MAX_SPEED_MPS, Motion, Pose, Prop, ROOT_QPOS, within};
 
 use super::World;
 use super::forces::reference;
@@ -10,10 +10,8 @@ use super::handle::{CharacterHandle, FixtureHandle, JointHandle, PropHandle};
 use super::recover::Standing;
 use super::scene::JointRecord;
 use super::solids::{quat, vec3, wxyz};
-use crate::description::world_error::{WorldError, within};
+use crate::description::world_error::WorldError;
 use crate::kinematics::velocity_at;
-use policy_core::contract::Fixture;
-use policy_core::contract::{Motion, Prop};
 
 impl World {
     /// What a prop was made of.

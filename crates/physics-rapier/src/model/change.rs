@@ -4,12 +4,12 @@ use std::sync::Arc;
 
 use policy_core::contract::{HeightField, SettingError, Settings};
 use rapier3d::dynamics::MassProperties;
-use rapier3d::geometry::{Array2, Collider, ColliderBuilder, ColliderSet};
-use rapier3d::math::{Rotation, Vector};
-use rapier3d::parry::shape::HeightFieldFlags;
+use rapier3d::geometry::{Collider, ColliderSet};
+use rapier3d::math::Vector;
 use rapier3d_mjcf::MjcfRobot;
 
 use super::{Model, Variant};
+use crate::world::of_heights;
 
 /// How far planes lie below a height field, metres, as in physics-bridge: far enough that nothing touches both.
 const PLANE_DROP_M: f32 = 0.1;
@@ -26,7 +26,8 @@ impl Model {
                 plane.set_translation(below);
             }
             let friction = ground.first().map_or(1.0, Collider::friction);
-            ground.push(collider(field, friction));
+            let shape = of_heights([field.rows(), field.columns()], field.half_extent(), field.heights());
+            ground.push(shape.friction(friction).build());
         }
         let variant = Variant { ground, field: field.cloned(), ..Variant::clone(&self.variant) };
         Self { shared: Arc::clone(&self.shared), variant: Arc::new(variant) }
@@ -83,18 +84,4 @@ fn scale_mass(robot: &mut MjcfRobot, factor: f32) {
         entry.body.set_additional_mass_properties(scaled, false);
         entry.mass *= factor;
     }
-}
-
-/// Rapier's height fields have y up and their rows along z. Turned upright, the rows run against y.
-fn collider(field: &HeightField, friction: f32) -> Collider {
-    let (rows, columns) = (field.rows(), field.columns());
-    let [half_x, half_y] = field.half_extent();
-    let height = |row: usize, column: usize| field.heights()[(rows - 1 - row) * columns + column];
-    let heights = Array2::from_fn(rows, columns, height);
-    let scale = Vector::new(2.0 * half_x, 1.0, 2.0 * half_y);
-    // Without the flag a foot that slides over an edge between two triangles stumbles over it.
-    ColliderBuilder::heightfield_with_flags(heights, scale, HeightFieldFlags::FIX_INTERNAL_EDGES)
-        .rotation(Rotation::from_rotation_x(std::f32::consts::FRAC_PI_2).to_scaled_axis())
-        .friction(friction)
-        .build()
 }

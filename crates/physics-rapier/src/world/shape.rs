@@ -30,17 +30,27 @@ pub(super) fn of_fixture(fixture: &Fixture) -> Result<ColliderBuilder, WorldErro
             ColliderBuilder::trimesh(points.to_vec(), triangles.to_vec()).map_err(|_| WorldError::Hull)?
         }
         FixtureShape::Heights { rows, columns, half_extents, heights } => {
-            // Rapier's height fields have y up and their rows along z. Turned upright, the rows run against y.
-            let height = |row: usize, column: usize| heights[(rows - 1 - row) * columns + column];
-            let scale = Vector::new(2.0 * half_extents.x, 1.0, 2.0 * half_extents.y);
-            let heights = Array2::from_fn(*rows, *columns, height);
-            // Without the flag a foot that slides over an edge between two triangles stumbles over it.
-            ColliderBuilder::heightfield_with_flags(heights, scale, HeightFieldFlags::FIX_INTERNAL_EDGES)
-                .position(upright())
+            of_heights([*rows, *columns], half_extents.to_array(), heights)
         }
     };
     let local = collider.position;
     Ok(rough(collider.position(place * local), fixture.friction))
+}
+
+/// The collider of heights on a grid about the origin, row by row, metres: `[rows, columns]`, half the sides along x and y.
+///
+/// Rapier's height fields have y up and their rows along z. Turned upright, the rows run against y.
+pub(crate) fn of_heights(
+    [rows, columns]: [usize; 2],
+    [half_x, half_y]: [f32; 2],
+    heights: &[f32],
+) -> ColliderBuilder {
+    let height = |row: usize, column: usize| heights[(rows - 1 - row) * columns + column];
+    let scale = Vector::new(2.0 * half_x, 1.0, 2.0 * half_y);
+    // Without the flag a foot that slides over an edge between two triangles stumbles over it.
+    let flags = HeightFieldFlags::FIX_INTERNAL_EDGES;
+    ColliderBuilder::heightfield_with_flags(Array2::from_fn(rows, columns, height), scale, flags)
+        .position(upright())
 }
 
 /// With a friction of which, as in the contract, the greater of two that touch counts.

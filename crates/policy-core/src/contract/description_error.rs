@@ -1,13 +1,13 @@
-//! Why a prop, fixture or joint can't be as described.
+//! Why something in a world can't be as described.
 
-/// Why the description of a prop, a fixture or a joint is refused.
+/// Why the description of something in a world is refused.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum DescriptionError {
     /// A number is out of its range, or not a number.
     #[error("expected {field} of {what} between {least} and {most}, found {found}")]
     Range {
-        /// `a prop`, `a fixture` or `a joint`.
+        /// `a prop`, `a fixture`, `a joint`, `a character`, `a grab` or `a ray`.
         what: &'static str,
         /// Name of the field.
         field: &'static str,
@@ -62,8 +62,11 @@ pub enum DescriptionError {
     },
 }
 
-/// Checks a number against its range.
-pub(super) fn within(
+/// Checks a number against its range, least and most.
+///
+/// # Errors
+/// When it is outside, or not a number; the error has the names of `what` and `field`.
+pub fn within(
     what: &'static str,
     field: &'static str,
     found: f32,

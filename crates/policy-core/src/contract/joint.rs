@@ -53,6 +53,15 @@ pub enum Joint {
 }
 
 impl Joint {
+    /// The point in the world that it turns about, metres; `None` for one that turns about no point.
+    #[must_use]
+    pub fn anchor(&self) -> Option<Vec3> {
+        match self {
+            Self::Hinge { anchor, .. } | Self::Ball { anchor, .. } => Some(*anchor),
+            Self::Slide { .. } | Self::Rope { .. } => None,
+        }
+    }
+
     /// Checks every number.
     ///
     /// # Errors

@@ -10,7 +10,7 @@ use std::time::{Duration, Instant};
 
 use glam::{Vec2, Vec3};
 use physics_bridge::{
-    CharacterHandle, Diverging, Grab, HISTORY_SECS, Handle, Model, Motion, Movable, PropHandle, Remedy, World,
+    CharacterHandle, Diverging, Grab, HISTORY_SECS, Handle, Model, Movable, PropHandle, Remedy, World,
 };
 use policy_core::{BodyId, Heading};
 
@@ -18,7 +18,7 @@ use super::rewind::Ring;
 use super::{SimError, SteeredCharacter};
 pub use loose::{LooseKind, MOST_BALLS};
 pub use pieces::Piece;
-use playground::{Playground, Race, RaceEvent, Wanderer, swing_force};
+use playground::{Playground, Race, RaceEvent, Wanderer};
 
 /// What the mouse can hold.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -326,9 +326,8 @@ impl SharedWorld {
     fn drive_swings(&mut self, dt_secs: f32) {
         for piece in &self.state.pieces {
             let Some(prop) = piece.of_scene.map(|index| &self.scene.props[index]) else { continue };
-            let (Some(height), Some(anchor)) = (prop.swing_m, piece.anchor) else { continue };
-            let Ok(Motion { position, velocity, .. }) = self.world.motion(piece.handle) else { continue };
-            if let Some(force) = swing_force(height, prop.prop.mass_kg, anchor, position, velocity) {
+            let Ok(motion) = self.world.motion(piece.handle) else { continue };
+            if let Some(force) = prop.swing_force(&motion) {
                 let _ = self.world.push(piece.handle, force, dt_secs);
             }
         }

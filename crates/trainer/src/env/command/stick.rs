@@ -1,5 +1,5 @@
-//! A stick as a game has it: its target goes ahead of the character, turn assist and steering correct it, and released it leads
-//! back to standing.
+//! A stick as a game has it: its target goes ahead of the character, turn assist and steering correct it, and its release
+//! leads back to standing.
 
 use glam::Vec2;
 use policy_core::training::{SteeringState, TARGET_RANGE_METRES};
@@ -60,7 +60,7 @@ impl Command {
         }
     }
 
-    /// True while a player lets go of a stick that moves along the path: the coordinate goes back to standing. Gaits slower than
+    /// True while the stick is released on a path that it moves along: the coordinate goes back to standing. Gaits slower than
     /// a walk stop by the target alone, because a trigger or a button holds them.
     pub(super) fn is_released(&self) -> bool {
         self.assisted && self.stop && self.leads_to_standing

@@ -4,7 +4,6 @@ use glam::{Quat, Vec3};
 use physics_bridge::{Motion, PropHandle, Solid, WorldEdit, WorldError};
 
 use super::{LooseKind, SharedWorld};
-use crate::things::anchor_of;
 use playground::{Paint, Playground};
 
 /// A prop of the scene, or one that was thrown or put there.
@@ -45,13 +44,13 @@ impl Piece {
 pub(super) fn add(edit: &mut WorldEdit<'_>, scene: &Playground) -> Result<Vec<Piece>, WorldError> {
     let mut pieces = Vec::with_capacity(scene.props.len());
     for (index, placed) in scene.props.iter().enumerate() {
-        let motion = Motion { rotation: placed.rotation, ..Motion::at(placed.position) };
+        let motion = placed.start();
         let handle = edit.add_prop(placed.prop.clone(), motion)?;
         let mut piece = Piece::new(handle, placed.prop.solid.clone(), placed.paint, &motion);
         piece.of_scene = Some(index);
         if let Some(joint) = placed.joint {
             edit.join(handle, None, joint)?;
-            piece.anchor = anchor_of(Some(&joint));
+            piece.anchor = joint.anchor();
         }
         pieces.push(piece);
     }

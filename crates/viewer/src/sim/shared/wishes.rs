@@ -1,4 +1,4 @@
-//! From what a wanderer wants to a command.
+//! The commands of the players, and of the characters that wander.
 
 use playground::WanderPath;
 use policy_core::Command;
