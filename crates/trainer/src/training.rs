@@ -7,7 +7,8 @@ use policy_core::training::ActionScaling;
 use crate::amp::DiscriminatorReport;
 use crate::checkpoint::{ACTOR, CRITIC, DISCRIMINATOR, EMA, PARENT_DISCRIMINATOR};
 use crate::env::{
-    EnvironmentConfig, EpisodeReport, GraphNode, Normalisers, RewardTerms, TrainingGraph, VecEnv,
+    EnvironmentConfig, EpisodeReport, GraphNode, Normalisers, RandomisationConfig, RewardTerms,
+    TrainingGraph, VecEnv,
 };
 use crate::nn::{Adam, Network};
 use crate::ppo::{Done, Learner, Rollout, UpdateReport};
@@ -154,9 +155,11 @@ impl Training {
             self.shared.graph.set_node(last, node);
         }
         let randomisation = &phase.environment.randomisation;
-        let models_of =
-            |config: &EnvironmentConfig| (config.randomisation.terrain_metres, config.randomisation.dynamics);
-        if before.map_or((0.0, 0.0), models_of) != models_of(&phase.environment) {
+        let models_of = |config: &EnvironmentConfig| {
+            let RandomisationConfig { terrain_metres, step_metres, dynamics, .. } = config.randomisation;
+            [terrain_metres, step_metres, dynamics]
+        };
+        if before.map_or([0.0; 3], models_of) != models_of(&phase.environment) {
             let models = randomisation.models(&self.model)?;
             let demonstrations = self.discriminators.demonstrations();
             let context = self.shared.context(&phase.environment, &demonstrations);
@@ -273,7 +276,7 @@ fn task_share(
     share + turning * (1.0 - config.reward.turning_style_factor) * style
 }
 
-/// Weight that the tracking reward takes from the others. Trackers of skills trained together get it beside them.
+/// Share of the weights that tracking takes. In joint training it takes none: its reward is added to the others.
 fn tracking_share(config: &EnvironmentConfig) -> f32 {
     if config.reward.tracking_share > 0.0 { 0.0 } else { config.reward.tracking_weight }
 }

@@ -33,6 +33,9 @@ pub struct RandomisationConfig {
     /// Height of the hills of wavy ground, metres; zero for flat ground alone. Above zero one environment of five is flat,
     /// one has steps and three have waves.
     pub terrain_metres: f32,
+    /// Height of a step where the ground has waves and steps, metres. Above zero one environment of six has steps of half this
+    /// height, one of this height, three waves and one is flat. Zero for steps of 0.3 of `terrain_metres`.
+    pub step_metres: f32,
     /// Largest relative change of the motors' strength; friction changes by up to 1.5 times as much.
     pub dynamics: f32,
     /// Share of episodes in which every action arrives one tick late.
@@ -64,9 +67,15 @@ impl RandomisationConfig {
     pub fn models(&self, model: &Model) -> Result<Vec<Model>, ModelError> {
         let mut grounds = vec![model.clone()];
         if self.terrain_metres > 0.0 {
-            let rise_m = (STEP_RISE_SHARE * self.terrain_metres).max(0.01);
-            let steps = Terrain::Steps { rise_m, run_m: STEP_RUN_METRES, count: STEP_COUNT };
-            grounds.push(model.with_terrain(steps)?);
+            let rises: &[f32] = match self.step_metres {
+                0.0 => &[STEP_RISE_SHARE * self.terrain_metres],
+                highest => &[0.5 * highest, highest],
+            };
+            for rise in rises {
+                let rise_m = rise.max(0.01);
+                let steps = Terrain::Steps { rise_m, run_m: STEP_RUN_METRES, count: STEP_COUNT };
+                grounds.push(model.with_terrain(steps)?);
+            }
             for seed in 1..=WAVES {
                 let height_m = self.terrain_metres;
                 let waves = Terrain::Wavy { height_m, wavelength_m: WAVELENGTH_METRES, seed };
@@ -121,6 +130,18 @@ mod tests {
         let waves = grounds.iter().filter(|m| matches!(m.terrain(), Terrain::Wavy { .. })).count();
         let steps = grounds.iter().filter(|m| matches!(m.terrain(), Terrain::Steps { .. })).count();
         assert_eq!((grounds.len(), waves, steps), (5, 3, 1));
+        let high =
+            RandomisationConfig { terrain_metres: 0.1, step_metres: 0.1, ..RandomisationConfig::default() };
+        let rises = high
+            .models(&model())
+            .unwrap()
+            .iter()
+            .filter_map(|m| match m.terrain() {
+                Terrain::Steps { rise_m, .. } => Some(rise_m),
+                _ => None,
+            })
+            .collect::<Vec<_>>();
+        assert_eq!(rises, [0.05, 0.1]);
         let bodies = of(0.1, 0.2);
         assert_eq!(bodies.len(), 30);
         let plain = bodies.iter().filter(|m| m.settings() == Settings::default()).count();

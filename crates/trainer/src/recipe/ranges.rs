@@ -59,6 +59,7 @@ const RANGES: &[(&str, f64, f64)] = &[
     ("environment.reset.pre_failure_share", 0.0, 1.0),
     ("environment.reset.hand_over.share", 0.0, 1.0),
     ("environment.randomisation.terrain_metres", 0.0, 0.5),
+    ("environment.randomisation.step_metres", 0.0, 0.5),
     ("environment.randomisation.dynamics", 0.0, 0.5),
     ("environment.randomisation.latency_share", 0.0, 1.0),
     ("environment.randomisation.push_secs", 0.0, 1e6),
