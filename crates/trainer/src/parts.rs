@@ -117,7 +117,15 @@ impl Workspace {
         let learner = Learner::new(recipe.first().ppo.clone(), actors, graph.pairs().to_vec(), critic, rng);
         let discriminators = Discriminators::new(scorers, Vec::new());
         let (heights, pushed) = bodies(recipe, skeleton)?;
-        Ok(Parts { graph, learner, discriminators, start_demonstrations, hand_over: None, heights, pushed })
+        Ok(Parts {
+            graph,
+            learner,
+            discriminators,
+            start_demonstrations,
+            hand_over: Vec::new(),
+            heights,
+            pushed,
+        })
     }
 
     /// Clips that a recipe names for starts.

@@ -80,7 +80,9 @@ fn a_character_lies_below_the_recipe() {
 fn every_number_has_a_range() {
     let mut recipe = parse(GOOD).unwrap();
     let reset = &mut recipe.phases[0].environment.reset;
-    reset.hand_over = Some(crate::env::HandOverConfig { skill: "get_up".into(), share: 0.5 });
+    let start =
+        crate::env::HandOverConfig { skill: "get_up".into(), share: 0.5, out_of: vec!["walk".into()] };
+    reset.hand_over = vec![start];
     recipe.phases[0].environment.termination.min_heights.insert("pelvis".into(), 0.5);
     recipe.check_ranges(Path::new("x.toml")).expect("a range for every field and defaults within them");
 }
@@ -141,7 +143,7 @@ fn fields_that_do_not_fit_together_are_named() {
     assert!(
         error(&format!("{tracking}environment.reset.pre_failure_share = 0.1")).contains("pre_failure_share")
     );
-    let hand_over = "environment.reset.hand_over = { skill = \"get_up\", share = 0.1 }";
+    let hand_over = "environment.reset.hand_over = [{ skill = \"get_up\", share = 0.1 }]";
     assert!(parse(&format!("{}{hand_over}\n", together())).is_ok());
     assert!(error(hand_over).contains("hand_over"));
     assert!(error("environment.command.target_secs = [3.0, 1.0]").contains("target_secs"));

@@ -33,7 +33,7 @@ pub struct EnvContext<'a> {
     /// Other clips, for starts.
     pub start_demonstrations: Option<&'a Demonstrations>,
     /// What raises dropped characters, for starts.
-    pub hand_over: Option<&'a HandOver>,
+    pub hand_over: &'a [HandOver],
     /// Means and deviations of the whole graph.
     pub normalisers: &'a Normalisers,
     /// Heights that tell standing from lying.

@@ -38,9 +38,8 @@ pub struct ResetConfig {
     /// Share of episodes that start a second or two before an earlier failure of the same character, with the command it had
     /// then: rare failures are met often.
     pub pre_failure_share: f32,
-    /// Joint training only: episodes that start where an episodic skill hands over to a node.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub hand_over: Option<HandOverConfig>,
+    /// Joint training only: episodes that start where episodic skills hand over to a node.
+    pub hand_over: Vec<HandOverConfig>,
 }
 
 /// Starts where an episodic skill hands over.
@@ -51,6 +50,9 @@ pub struct HandOverConfig {
     pub skill: String,
     /// Share of episodes.
     pub share: f32,
+    /// Skills of the paths in whose clips it starts; dropped limp when there are none.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub out_of: Vec<String>,
 }
 
 /// Characters on a terrain start this near to its middle, metres along each axis.
@@ -84,10 +86,11 @@ impl Env {
             return;
         }
         self.choose_ground_position();
-        let handed_over = config.reset.hand_over.as_ref().map_or(0.0, |hand_over| hand_over.share);
-        if self.rng.chance(handed_over) && self.start_at_hand_over(context) {
-            self.tracker = false;
-            return;
+        for (hand_over, of_config) in context.hand_over.iter().zip(&config.reset.hand_over) {
+            if self.rng.chance(of_config.share) && self.start_at_hand_over(context, hand_over) {
+                self.tracker = false;
+                return;
+            }
         }
         self.tracker = self.rng.chance(config.reward.tracking_share);
         self.command = Command::start(&config.command, context.graph, self.tracker, &mut self.rng);

@@ -28,7 +28,7 @@ fn a_standing_start_is_upright_and_moves_ahead() {
         graph: &TrainingGraph::alone(vec![GraphNode::new("walk", &config, 1.0)], 0).unwrap(),
         demonstrations: &[&clips],
         start_demonstrations: None,
-        hand_over: None,
+        hand_over: &[],
         normalisers: &normalisers,
         heights: &TerminationHeights::new(&config.termination, model.skeleton()).unwrap(),
         pushed: &[],

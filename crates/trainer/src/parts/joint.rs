@@ -3,12 +3,13 @@
 use std::sync::Arc;
 
 use anyhow::{Context, Result};
+use files::quoted;
 use policy_core::{Controller, ControllerConfig, SkillId};
 use random::Rng;
 
 use super::{bodies, critic_sizes};
 use crate::amp::DiscriminatorLearner;
-use crate::env::{Demonstrations, GraphNode, HandOver, TrainingGraph};
+use crate::env::{Demonstrations, GraphNode, HandOver, HandOverConfig, TrainingGraph};
 use crate::nn::Network;
 use crate::pack::{PackPlan, TrainedSkill, bind};
 use crate::ppo::{Actor, Learner};
@@ -70,10 +71,8 @@ impl Workspace {
             joint_critic(root, critic_sizes(skeleton, recipe, graph.context_len()), &graph, &mut rng);
         let learner = Learner::new(recipe.first().ppo.clone(), actors, graph.pairs().to_vec(), critic, rng);
         let start_demonstrations = self.start_clips(recipe)?;
-        let hand_over = match &recipe.first().environment.reset.hand_over {
-            Some(hand_over) => Some(self.hand_over(&hand_over.skill, &graph)?),
-            None => None,
-        };
+        let starts = &recipe.first().environment.reset.hand_over;
+        let hand_over = starts.iter().map(|start| self.hand_over(start, &graph)).collect::<Result<_>>()?;
         let discriminators = Discriminators::new(scorers, halfway);
         let (heights, pushed) = bodies(recipe, skeleton)?;
         Ok(Parts { graph, learner, discriminators, start_demonstrations, hand_over, heights, pushed })
@@ -96,19 +95,22 @@ impl Workspace {
         recipe.halfway.iter().map(edge).collect()
     }
 
-    /// An episodic skill of the pack's plan, ready to raise dropped characters.
-    fn hand_over(&self, name: &str, graph: &TrainingGraph) -> Result<HandOver> {
+    /// An episodic skill of the pack's plan, ready to play.
+    fn hand_over(&self, start: &HandOverConfig, graph: &TrainingGraph) -> Result<HandOver> {
+        let name = &start.skill;
         let plan = PackPlan::load(&self.recipes.join(PLAN))?;
-        let skill = plan.skills.iter().find(|s| s.name == name).cloned();
+        let skill = plan.skills.iter().find(|s| s.name == *name).cloned();
         let skill = skill.with_context(|| format!("expected an episodic skill of {PLAN}, found {name}"))?;
-        let node = graph.nodes().iter().position(|node| node.name == skill.returns_to);
-        let node = node.with_context(|| {
-            format!("{name}: expected to return to a skill of the paths, found {}", skill.returns_to)
-        })?;
+        let on_paths = |wanted: &String| {
+            let node = graph.nodes().iter().position(|node| node.name == *wanted);
+            node.with_context(|| format!("{name}: expected a skill of the paths, found {}", quoted(wanted)))
+        };
+        let node = on_paths(&skill.returns_to)?;
+        let out_of = start.out_of.iter().map(on_paths).collect::<Result<Vec<_>>>()?;
         let needed =
             |n: &str| n == skill.policy || n == skill.returns_to || Some(n) == skill.discriminator.as_deref();
         let mut plan = plan.only(needed);
-        plan.skills.retain(|s| s.name == name);
+        plan.skills.retain(|s| s.name == *name);
         let mut trained = Vec::new();
         for policy in &plan.policies {
             let (checkpoint, path) = self.trained(&policy.name)?.with_context(|| {
@@ -124,7 +126,8 @@ impl Workspace {
             steering: None,
             ..ControllerConfig::default()
         };
-        Ok(HandOver { controller: Controller::with_config(pack, config), skill: SkillId::new(0), node })
+        let controller = Controller::with_config(pack, config);
+        Ok(HandOver { controller, skill: SkillId::new(0), node, out_of })
     }
 
     /// The faster skill's first clip, half-way to a pose of the slower one's.

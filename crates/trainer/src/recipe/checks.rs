@@ -97,7 +97,9 @@ impl Recipe {
             (env.num_envs, env.horizon, &env.reset.clips, ppo.minibatch, &ppo.critic_hidden)
         } && (&discriminator.hidden, discriminator.batch, discriminator.replay_size)
             == (&first.discriminator.hidden, first.discriminator.batch, first.discriminator.replay_size);
-        let skill = |e: &crate::env::EnvironmentConfig| e.reset.hand_over.as_ref().map(|h| h.skill.clone());
+        let started = |e: &crate::env::EnvironmentConfig| -> Vec<_> {
+            e.reset.hand_over.iter().map(|start| (start.skill.clone(), start.out_of.clone())).collect()
+        };
         vec![
             (
                 rows <= MOST_ROWS,
@@ -106,9 +108,9 @@ impl Recipe {
                 rows.to_string(),
             ),
             (
-                same && skill(env) == skill(&first.environment),
+                same && started(env) == started(&first.environment),
                 "phases",
-                "the same num_envs, horizon, minibatch, hidden sizes, batch, replay_size, reset.clips and hand_over.skill",
+                "the same num_envs, horizon, minibatch, hidden sizes, batch, replay_size, reset.clips and hand_over but for its shares",
                 "others".into(),
             ),
             (
@@ -163,7 +165,7 @@ impl Recipe {
                 reward.tracking_share.to_string(),
             ),
             (
-                together || reset.hand_over.is_none(),
+                together || reset.hand_over.is_empty(),
                 "environment.reset.hand_over",
                 "none without paths",
                 format!("{:?}", reset.hand_over),

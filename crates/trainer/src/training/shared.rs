@@ -21,8 +21,8 @@ pub struct Parts {
     pub discriminators: Discriminators,
     /// Other clips that episodes may start from.
     pub start_demonstrations: Option<Demonstrations>,
-    /// What raises dropped characters, for starts.
-    pub hand_over: Option<HandOver>,
+    /// Episodic skills whose ends are starts, in the recipe's order.
+    pub hand_over: Vec<HandOver>,
     /// Heights that tell standing from lying.
     pub heights: TerminationHeights,
     /// Bodies that are pushed.
@@ -34,7 +34,7 @@ pub struct Parts {
 pub(super) struct Shared {
     pub(super) graph: TrainingGraph,
     pub(super) start_demonstrations: Option<Demonstrations>,
-    pub(super) hand_over: Option<HandOver>,
+    pub(super) hand_over: Vec<HandOver>,
     pub(super) normalisers: Normalisers,
     pub(super) heights: TerminationHeights,
     pub(super) pushed: Vec<BodyId>,
@@ -53,7 +53,7 @@ impl Shared {
             graph: &self.graph,
             demonstrations,
             start_demonstrations: self.start_demonstrations.as_ref(),
-            hand_over: self.hand_over.as_ref(),
+            hand_over: &self.hand_over,
             normalisers: &self.normalisers,
             heights: &self.heights,
             pushed: &self.pushed,

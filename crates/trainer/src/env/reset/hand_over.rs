@@ -1,4 +1,4 @@
-//! Starts where an episodic skill hands over: the character is dropped limp and the skill raises it, as in a game.
+//! Starts where an episodic skill hands over, as in a game: the character is dropped limp, or in a gait, and the skill plays.
 
 use policy_core::training::RISE_SECONDS;
 use policy_core::{Command as GameCommand, Controller, SkillEnd, SkillId};
@@ -9,7 +9,10 @@ use super::super::env::{Env, EnvContext};
 /// Ticks that the skill may take, twice what a game gives a rise; after that the start is given up.
 const RISE_TICKS: u32 = (2.0 * RISE_SECONDS / DT_SECS) as u32;
 
-/// An episodic skill that raises a character, and where on the graph it hands over.
+/// Distance of the target of a skill that starts in a gait, metres.
+const AHEAD_METRES: f32 = 5.0;
+
+/// An episodic skill, what it starts from, and where on the graph it hands over.
 #[derive(Clone, Debug)]
 pub struct HandOver {
     /// A controller of a pack with the skill, without automatic recovery.
@@ -18,18 +21,31 @@ pub struct HandOver {
     pub skill: SkillId,
     /// Node of the graph that the skill returns to.
     pub node: usize,
+    /// Nodes in whose clips the skill starts; dropped limp when there are none.
+    pub out_of: Vec<usize>,
 }
 
 impl Env {
-    /// Starts an episode at the tick in which the skill hands over to its node; false when there is no such skill or it did not
-    /// succeed.
-    pub(in super::super) fn start_at_hand_over(&mut self, context: &EnvContext<'_>) -> bool {
-        let Some(hand_over) = context.hand_over else { return false };
-        let pose = context.demonstrations[hand_over.node].sample_reference_state(&mut self.rng);
-        self.drop_limp(context, &pose);
+    /// Starts an episode at the tick in which the skill hands over to its node; false when it did not succeed.
+    pub(in super::super) fn start_at_hand_over(
+        &mut self,
+        context: &EnvContext<'_>,
+        hand_over: &HandOver,
+    ) -> bool {
+        let out_of = match hand_over.out_of.as_slice() {
+            [] => None,
+            nodes => Some(nodes[self.rng.index(nodes.len())]),
+        };
+        let demonstrations = context.demonstrations[out_of.unwrap_or(hand_over.node)];
+        let start = demonstrations.sample_reference_state(&mut self.rng);
+        match out_of {
+            None => self.drop_limp(context, &start),
+            Some(_) => self.start_from(&start),
+        }
         let mut controller = hand_over.controller.clone();
         controller.reset();
-        let mut asked = GameCommand { skill: Some(hand_over.skill), ..GameCommand::default() };
+        let target = out_of.map(|_| self.root_position() + AHEAD_METRES * self.heading().direction());
+        let mut asked = GameCommand { skill: Some(hand_over.skill), target, ..GameCommand::default() };
         for _ in 0..RISE_TICKS {
             let targets = controller.tick(&self.state, &asked, DT_SECS);
             self.character.actuate(targets);
@@ -99,6 +115,7 @@ mod tests {
                 ControllerConfig { auto_recover: false, assist_rise: false, ..Default::default() },
             ),
             node: 1,
+            out_of: Vec::new(),
         };
         let context = EnvContext {
             config: &config,
@@ -106,7 +123,7 @@ mod tests {
             graph: &graph,
             demonstrations: &[&clips, &clips],
             start_demonstrations: None,
-            hand_over: Some(&hand_over),
+            hand_over: &[],
             normalisers: &normalisers,
             heights: &TerminationHeights::new(&config.termination, model.skeleton()).unwrap(),
             pushed: &[],
@@ -114,13 +131,12 @@ mod tests {
         let mut env = Env::new(&model, Rng::new(7, 0));
         let mut up = 0;
         for _ in 0..8 {
-            if env.start_at_hand_over(&context) {
+            if env.start_at_hand_over(&context, &hand_over) {
                 assert!(env.state.root_height() > 0.7 && !env.tracks());
                 assert_eq!(env.command.position.as_node(), Some(NodeId::new(1)));
                 up += 1;
             }
         }
         assert!(up >= 6, "{up} of 8");
-        assert!(!env.start_at_hand_over(&EnvContext { hand_over: None, ..context }));
     }
 }
