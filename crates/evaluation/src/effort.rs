@@ -3,6 +3,7 @@
 use policy_core::CharacterPack;
 
 use super::Section;
+use super::encounters::{COURSE_SECS, nominal_secs};
 use super::player::STRAIGHT_COORDINATES;
 use super::press::bound_buttons;
 use super::stress::{CASE_COUNT, GET_UP_SECS, GROUND_COUNT, PadKind, nominal_trials};
@@ -45,6 +46,10 @@ pub struct Effort {
     pub drops_uneven: usize,
     /// How exactly the largest push is found in each gait, newton.
     pub push_step_newton: f32,
+    /// Tries of each encounter with others, balls, crates, a door and stairs.
+    pub encounters: usize,
+    /// Runs over the playground's course.
+    pub courses: usize,
 }
 
 impl Effort {
@@ -67,6 +72,8 @@ impl Effort {
         roam_secs: 60.0,
         drops_uneven: 200,
         push_step_newton: 10.0,
+        encounters: 48,
+        courses: 10,
     };
 
     /// Less than three minutes on two idle cores, for a first look.
@@ -88,6 +95,8 @@ impl Effort {
         roam_secs: 20.0,
         drops_uneven: 12,
         push_step_newton: 50.0,
+        encounters: 4,
+        courses: 1,
     };
 
     /// The same with so many characters in every measure; drops and seconds stay.
@@ -138,6 +147,8 @@ impl Effort {
             Section::Terrain => roamed * GROUND_COUNT as f32,
             Section::GetUp => of(GROUND_COUNT * self.drops_uneven, GET_UP_SECS),
             Section::Robustness => roamed * CASE_COUNT as f32,
+            Section::Encounters => nominal_secs(self),
+            Section::Course => of(self.courses, COURSE_SECS),
             Section::Pushes => gaits as f32 * nominal_trials(self.push_step_newton, self.settled) * 3.0,
         }
     }

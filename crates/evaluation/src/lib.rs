@@ -6,6 +6,8 @@
 
 pub mod compare;
 mod effort;
+pub mod encounters;
+mod error;
 mod eval_character;
 mod layers;
 pub mod legs;
@@ -31,6 +33,7 @@ pub mod trial;
 mod upright;
 
 pub use effort::Effort;
+pub use error::EvaluationError;
 pub use eval_character::{EvalCharacter, Wanderer};
 pub use layers::{LayerReport, measure_layers, watch_layers};
 pub use motion::{MotionReport, STANCE_METRES, clip_states, pose_error, watch};

@@ -2,10 +2,11 @@
 
 use std::collections::BTreeMap;
 
-use physics::ModelError;
+use physics::Engine;
 use policy_core::{PathId, SkillId};
 use serde::{Deserialize, Serialize};
 
+use super::encounters::{CourseReport, EncounterReport, measure_course, measure_encounters};
 use super::legs::{LegReport, measure_legs};
 use super::press::{
     JumpReport, PressReport, RiseReport, bound_buttons, button_name, measure_buttons, measure_jumps,
@@ -21,7 +22,7 @@ use super::stress::{
     measure_random_pad, measure_robustness, measure_terrain,
 };
 use super::trial::Gait;
-use super::{Rig, Section};
+use super::{EvaluationError, Rig, Section};
 
 /// Measures by name.
 type By<T> = BTreeMap<String, T>;
@@ -81,6 +82,12 @@ pub struct PlayerReport {
     /// By gait.
     #[serde(skip_serializing_if = "BTreeMap::is_empty")]
     pub push_pelvis: By<SidesReport>,
+    /// By what is met.
+    #[serde(skip_serializing_if = "BTreeMap::is_empty")]
+    pub encounters: By<EncounterReport>,
+    /// The playground's course.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub course: Option<CourseReport>,
 }
 
 /// Turns, starts and stops.
@@ -111,7 +118,7 @@ impl PlayerReport {
     ///
     /// # Errors
     /// When the model can't be set on uneven ground, or changed.
-    pub fn measure(&mut self, section: Section, rig: &Rig<'_>) -> Result<(), ModelError> {
+    pub fn measure(&mut self, section: Section, rig: &Rig<'_>) -> Result<(), EvaluationError> {
         match section {
             Section::Turns => {
                 let turns = |gait: Gait| (gait.name.into(), measure_turns(rig, &rig.settled(&gait)));
@@ -136,6 +143,13 @@ impl PlayerReport {
                 let torso = skeleton.body_named("torso");
                 self.push_torso = torso.map(|torso| measure_pushes(rig, torso)).unwrap_or_default();
                 self.push_pelvis = measure_pushes(rig, skeleton.root());
+            }
+            // Shared worlds of characters and props are MuJoCo's.
+            Section::Encounters if rig.model.engine() == Engine::Mujoco => {
+                self.encounters = measure_encounters(rig)?;
+            }
+            Section::Course if rig.model.engine() == Engine::Mujoco => {
+                self.course = Some(measure_course(rig)?);
             }
             _ => {}
         }

@@ -4,15 +4,15 @@ use std::collections::BTreeMap;
 use std::sync::Arc;
 
 use glam::Vec3;
-use physics::{Model, ModelError};
+use physics::Model;
 use physics_bridge::GroundKind;
 use policy_core::{BlendMode, CharacterPack, CharacterState, ControllerConfig, NodeId, PathId, SkillId};
 use serde::Serialize;
 
 use super::{
-    Effort, LayerReport, MotionReport, PlayerReport, Progress, RateReport, Rig, Section, UprightReport,
-    measure_coordinates, measure_get_up, measure_layers, measure_push, measure_skill, measure_sweep,
-    measure_upright, pose_error, watch,
+    Effort, EvaluationError, LayerReport, MotionReport, PlayerReport, Progress, RateReport, Rig, Section,
+    UprightReport, measure_coordinates, measure_get_up, measure_layers, measure_push, measure_skill,
+    measure_sweep, measure_upright, pose_error, watch,
 };
 use crate::response::commanded_mps;
 
@@ -119,7 +119,7 @@ pub fn evaluate(
     (effort, sections): (&Effort, &[Section]),
     clips: &BTreeMap<String, Vec<CharacterState>>,
     progress: &Progress,
-) -> Result<Evaluation, ModelError> {
+) -> Result<Evaluation, EvaluationError> {
     let mut evaluation = Evaluation { engine: model.engine().name(), ..Evaluation::default() };
     let graph = pack.graph();
     for edge in graph.edges() {
@@ -153,7 +153,7 @@ impl Evaluation {
         model: &Model,
         pack: &Arc<CharacterPack>,
         effort: &Effort,
-    ) -> Result<(), ModelError> {
+    ) -> Result<(), EvaluationError> {
         let mut grounds = Vec::new();
         for kind in GroundKind::ALL.into_iter().filter(|kind| *kind != GroundKind::Flat) {
             grounds.push((kind.name(), model.with_terrain(kind.terrain(HILLS_SEED))?));

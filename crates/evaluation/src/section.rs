@@ -41,11 +41,15 @@ pub enum Section {
     Robustness,
     /// Pushes from four sides on torso and pelvis.
     Pushes,
+    /// Others, balls, crates, a door and stairs in a shared world.
+    Encounters,
+    /// The playground's course.
+    Course,
 }
 
 impl Section {
     /// All sections, in the order in which they are measured.
-    pub const ALL: [Section; 19] = [
+    pub const ALL: [Section; 21] = [
         Section::Paths,
         Section::Upright,
         Section::Push,
@@ -65,6 +69,8 @@ impl Section {
         Section::GetUp,
         Section::Robustness,
         Section::Pushes,
+        Section::Encounters,
+        Section::Course,
     ];
 
     /// Name for command lines.
@@ -90,6 +96,8 @@ impl Section {
             Section::GetUp => "get_up",
             Section::Robustness => "robustness",
             Section::Pushes => "pushes",
+            Section::Encounters => "encounters",
+            Section::Course => "course",
         }
     }
 

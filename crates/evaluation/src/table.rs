@@ -26,6 +26,7 @@ pub fn table(report: &PlayerReport) -> String {
     falls(&mut text, "falls a minute, body and world changed", &report.robustness);
     pushes(&mut text, "push on the torso, newton", &report.push_torso);
     pushes(&mut text, "push on the pelvis, newton", &report.push_pelvis);
+    encounters(&mut text, report);
     text
 }
 
@@ -187,6 +188,21 @@ fn pushes(text: &mut String, title: &str, gaits: &BTreeMap<String, SidesReport>)
     for (gait, sides) in gaits {
         let newtons = [sides.forward_newton, sides.backward_newton, sides.left_newton, sides.right_newton];
         line(text, gait, newtons.map(|newton| format!("{newton:12.0}")));
+    }
+}
+
+fn encounters(text: &mut String, report: &PlayerReport) {
+    if !report.encounters.is_empty() {
+        head(text, "encounter", ["characters", "stays up", "gets up", "arrives"]);
+    }
+    for (name, met) in &report.encounters {
+        let shares = [Some(met.stays_up), met.gets_up, met.arrives].map(number);
+        line(text, name, [format!("{:>12}", met.characters)].into_iter().chain(shares));
+    }
+    if let Some(course) = &report.course {
+        head(text, "course", ["no fall", "finished", "seconds"]);
+        let counts = [course.without_a_fall, course.finished].map(|count| share(count, course.runs));
+        line(text, "", counts.into_iter().chain([number(course.secs)]));
     }
 }
 

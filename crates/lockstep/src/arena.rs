@@ -200,7 +200,7 @@ impl Arena {
             }
         }
         for (race, player) in self.races.iter_mut().zip(&self.players) {
-            let (at, down) = (player.state.root().position.truncate(), player.view().report.fallen);
+            let (at, down) = (player.state.root().position.truncate(), player.is_down());
             race.tick(&self.layout.checkpoints, at, down);
         }
         self.tick += 1;

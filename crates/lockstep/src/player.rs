@@ -106,6 +106,11 @@ impl Player {
         stands.then(|| (self.shoved, (direction * SHOVE_NEWTON).extend(0.0), SHOVE_SECS))
     }
 
+    /// True from a fall until it is on its feet again.
+    pub(crate) fn is_down(&self) -> bool {
+        self.controller.is_down()
+    }
+
     /// True when it has lain too long and no skill gets it up.
     pub(crate) fn lies_for_good(&mut self, dt_secs: f32) -> bool {
         let report = self.controller.report();

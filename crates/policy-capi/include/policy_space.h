@@ -315,7 +315,7 @@ typedef struct PsConfig {
   int32_t cache_blends;
   // Not 0: start the recovery skill when the character has fallen.
   int32_t auto_recover;
-  // Not 0: start it too when standing up out of a low gait takes longer than 0.8 s.
+  // Not 0: start it too when standing up out of a low gait takes longer than 0.1 s.
   int32_t assist_rise;
   // Node to start at.
   int32_t start_node;

@@ -41,7 +41,7 @@ pub struct PsConfig {
     pub cache_blends: i32,
     /// Not 0: start the recovery skill when the character has fallen.
     pub auto_recover: i32,
-    /// Not 0: start it too when standing up out of a low gait takes longer than 0.8 s.
+    /// Not 0: start it too when standing up out of a low gait takes longer than 0.1 s.
     pub assist_rise: i32,
     /// Node to start at.
     pub start_node: i32,

@@ -11,7 +11,7 @@ use crate::blend::Blend;
 use crate::command::Command;
 use crate::controller_state::{ControllerState, StateError};
 use crate::evaluator::{BlendEvaluator, BlendMode};
-use crate::fall::{Heights, fall_height};
+use crate::fall::{Heights, step_heights};
 use crate::ids::{NodeId, PolicyId, SkillId};
 use crate::kernel::Arithmetic;
 use crate::observation::{observe_into, target_input};
@@ -35,6 +35,9 @@ const LONGEST_TICK: f32 = 0.25;
 /// A tick this much longer or shorter than the control period, relative to it, is reported.
 const RATE_TOLERANCE: f32 = 0.25;
 
+/// Seconds that a character has to stand up by itself out of a low gait.
+const ASSIST_SECONDS: f32 = 0.1;
+
 /// No action is larger than this; policies stay within about 1.
 const ACTION_LIMIT: f32 = 10.0;
 
@@ -47,8 +50,8 @@ pub struct ControllerConfig {
     pub cache_blends: bool,
     /// Start the pack's recovery skill when the character has fallen.
     pub auto_recover: bool,
-    /// Start it too when standing up, out of a low gait, takes longer than 0.8 s. Otherwise the character acts to and
-    /// fro along the edge, and has fallen after [`RISE_SECONDS`](crate::training::RISE_SECONDS).
+    /// Start it too when the character is to stand up out of a low gait and has not within 0.1 s. Otherwise it acts to and
+    /// fro along the edge from 0.8 s on, and has fallen after [`RISE_SECONDS`](crate::training::RISE_SECONDS).
     pub assist_rise: bool,
     /// Node to start at. One that is not there means the first.
     pub start: NodeId,
@@ -164,6 +167,15 @@ impl Controller {
     #[must_use]
     pub fn report(&self) -> &TickReport {
         &self.state.report
+    }
+
+    /// True from a fall until the character is on its feet again: it has fallen, or the recovery skill raises it. Standing up
+    /// out of a low gait, such as a crawl, is no fall.
+    #[must_use]
+    pub fn is_down(&self) -> bool {
+        let report = &self.state.report;
+        let recovers = report.skill.is_some_and(|progress| Some(progress.skill) == self.pack.recovery());
+        report.fallen || (recovers && self.state.fall.rising_seconds == 0.0)
     }
 
     /// Inputs of the policy in the last tick: the normalised observation, then the target.
@@ -304,13 +316,15 @@ impl Controller {
         report.goal = graph.settled(goal.unwrap_or(report.position), report.position);
         let mut next = report.position;
         graph.travel(&mut next, report.goal, dt);
-        let limits = [report.position, next].map(|position| fall_height(graph, position));
+        let limits = step_heights(graph, [report.position, next]);
         if !self.state.fall.holds_back(limits, heights, dt) {
             report.position = next;
         } else if let (true, true, Some(recovery)) =
-            (self.config.assist_rise, self.state.fall.is_late(), self.pack.recovery())
+            (self.config.assist_rise, self.state.fall.rising_seconds() > ASSIST_SECONDS, self.pack.recovery())
         {
+            let rising = self.state.fall.rising_seconds;
             self.start_skill(recovery);
+            self.state.fall.rising_seconds = rising;
         }
     }
 

@@ -66,6 +66,21 @@ pub fn fall_height(graph: &PolicyGraph, position: GraphPosition) -> Option<f32> 
     }
 }
 
+/// Fall heights of a step along the graph, for [`FallDetector::holds_back`]: where it begins, and where it leads. An edge
+/// that is only crossed ([`Edge::transit`](crate::training::Edge::transit)) leads to its end: a character that is to stand up
+/// does so before it sets out.
+#[must_use]
+pub fn step_heights(graph: &PolicyGraph, [before, next]: [GraphPosition; 2]) -> [Option<f32>; 2] {
+    let crossed =
+        next.as_node().is_none() && graph.edge_between(next.from, next.to).is_some_and(|edge| edge.transit);
+    let leads_to = match before.along(next.from, next.to) {
+        Some(t) if crossed && next.t < t => GraphPosition::node(next.from),
+        Some(t) if crossed && next.t > t => GraphPosition::node(next.to),
+        _ => next,
+    };
+    [before, leads_to].map(|position| fall_height(graph, position))
+}
+
 /// Watches one character for falls, and holds it back in a low gait until it has stood up.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct FallDetector {

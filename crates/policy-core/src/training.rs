@@ -4,7 +4,7 @@
 pub use crate::action::{ActionScaling, ActionScalingError};
 pub use crate::blend::{BlendFull, BlendTerm, MAX_BLEND_TERMS};
 pub use crate::evaluator::Evaluation;
-pub use crate::fall::{FallDetector, Heights, LATE_RISE_SECONDS, RISE_SECONDS, fall_height};
+pub use crate::fall::{FallDetector, Heights, LATE_RISE_SECONDS, RISE_SECONDS, fall_height, step_heights};
 pub use crate::features::{FRAME_AGES, FrameHistory, HISTORY_LEN, discriminator_frame_into};
 pub use crate::graph::{Edge, GraphError, MAX_NODES, Node};
 pub use crate::ids::{DiscriminatorId, JointId};

@@ -11,7 +11,8 @@ use crate::state::CharacterState;
 const LEAST_COORDINATE: f32 = 0.2;
 
 /// While the target lies far off the heading, a path's coordinate moves towards the first gait of the path that moves.
-/// Faster gaits slow down to it; a gait between standing and it speeds up. Slower gaits beyond it, such as a crouch, stay.
+/// Faster gaits slow down to it; a gait between standing and it speeds up, and an upright gait of another style gives way to
+/// it. Low gaits beyond it, such as a crouch, stay.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TurnAssist {
     /// Angle from which it slows a faster gait down, radians.
@@ -45,7 +46,9 @@ impl TurnAssist {
         let Some(turning) = (0..nodes.len()).find(|&i| speed(i) > 0.0) else { return *command };
         let coordinate = coordinate.clamp(0.0, (nodes.len() - 1) as f32);
         let beyond = (libm::ceilf(coordinate) as usize).min(nodes.len() - 1);
-        if beyond > turning && speed(beyond) < speed(turning) {
+        let fall_height = |i: usize| graph.node(nodes[i]).fall_height.unwrap_or(0.0);
+        let low = fall_height(beyond) < fall_height(turning);
+        if beyond > turning && low && speed(beyond) < speed(turning) {
             return *command;
         }
         let slower = coordinate < turning as f32;

@@ -123,6 +123,7 @@ fn a_fall_starts_the_recovery_and_lying_on_repeats_it() {
     }
     assert_eq!(started.len(), 3, "{started:?}");
     assert!((8..=10).contains(&started[0]) && (88..=92).contains(&(started[1] - started[0])), "{started:?}");
+    assert!(controller.is_down());
 }
 
 #[test]
@@ -173,6 +174,31 @@ fn leaving_a_crawl_requires_standing_first() {
 }
 
 #[test]
+fn standing_up_comes_before_a_transit_edge_out_of_a_crawl() {
+    let mut manifest = common::manifest();
+    manifest.edges[4].transit = true;
+    manifest.policies.iter_mut().find(|p| p.name == "crawl").unwrap().fall_height = Some(0.1);
+    let pack = CharacterPack::from_parts(manifest, common::tensors(0.0)).unwrap();
+    let crawl = pack.graph().node_named("crawl").unwrap();
+    let config = ControllerConfig { start: crawl, ..ControllerConfig::default() };
+    let mut controller = Controller::with_config(Arc::new(pack), config);
+    let walking = Command { goal: Goal::Node(n(1)), ..Command::default() };
+    let mut low = standing();
+    low.bodies[0].position.z = 0.3;
+    for _ in 0..5 {
+        assert_eq!(controller.report().position.as_node(), Some(crawl), "it has not set out");
+        controller.tick(&low, &walking, DT);
+    }
+    assert!(controller.report().skill.is_some() && !controller.is_down());
+    // Down into it there is nothing to wait for.
+    let mut controller = Controller::new(Arc::clone(controller.pack()));
+    for _ in 0..90 {
+        controller.tick(&standing(), &Command { goal: Goal::Node(crawl), ..Command::default() }, DT);
+    }
+    assert_eq!(controller.report().position.as_node(), Some(crawl));
+}
+
+#[test]
 fn the_recovery_skill_takes_over_when_standing_up_is_late() {
     let mut low = standing();
     low.bodies[0].position.z = 0.3;
@@ -190,8 +216,9 @@ fn the_recovery_skill_takes_over_when_standing_up_is_late() {
             held = if controller.report().position == before { held + 1 } else { 0 };
             assert!(held < 60, "{:?}", controller.report());
         }
-        assert!((24..=27).contains(&held), "{held} ticks are 0.8 s");
+        assert!((3..=4).contains(&held), "{held} ticks are 0.1 s");
         assert_eq!(controller.report().skill_started, recovery);
+        assert!(!controller.is_down(), "standing up out of a crawl is no fall");
     }
 }
 

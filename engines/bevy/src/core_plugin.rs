@@ -207,9 +207,7 @@ fn decide(
         if let Some(skill) = tick.skill_started {
             started.write(SkillStarted { character: entity, skill, name: name(skill) });
         }
-        // A controller that recovers by itself starts the recovery skill in the tick in which it has fallen.
-        let recovers = tick.skill.is_some_and(|progress| Some(progress.skill) == pack.recovery());
-        let down = tick.fallen || recovers;
+        let down = controller.controller.is_down();
         if down && !report.fallen {
             fell.write(Fell { character: entity });
         } else if report.fallen && !down {

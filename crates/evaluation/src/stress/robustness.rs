@@ -20,9 +20,11 @@ enum Change {
     Settings(fn(&mut Settings)),
     /// Factor on an attribute of the MJCF.
     Attribute(&'static str, f64),
+    /// Kilograms on the back.
+    Load(f32),
 }
 
-const CASES: [(&str, Change); 13] = [
+const CASES: [(&str, Change); 14] = [
     ("none", Change::Nothing),
     ("latency_1_tick", Change::LateTick),
     ("strength_x0.8", Change::Settings(|settings| settings.strength = 0.8)),
@@ -36,6 +38,7 @@ const CASES: [(&str, Change); 13] = [
     ("timestep_x0.5", Change::Attribute("timestep", 0.5)),
     ("timestep_x2", Change::Attribute("timestep", 2.0)),
     ("action_noise_0.1", Change::Noise),
+    ("load_5kg", Change::Load(5.0)),
 ];
 
 /// Falls by case, and in it by gait.
@@ -83,12 +86,27 @@ fn changed(model: &Model, change: Change) -> Result<Model, ModelError> {
             model.with_settings(settings)
         }
         Change::Attribute(name, factor) => {
-            let text = scaled(model.described().mjcf(), name, factor);
-            let described = physics_bridge::Model::from_mjcf_with_skeleton(&text, model.skeleton().clone())?;
-            Model::new(&described, model.engine())
+            described_by(model, &scaled(model.described().mjcf(), name, factor))
         }
+        Change::Load(kg) => described_by(model, &loaded(model.described().mjcf(), kg)),
         Change::Nothing | Change::LateTick | Change::Noise => Ok(model.clone()),
     }
+}
+
+/// The same character as another MJCF describes it.
+fn described_by(model: &Model, mjcf: &str) -> Result<Model, ModelError> {
+    let described = physics_bridge::Model::from_mjcf_with_skeleton(mjcf, model.skeleton().clone())?;
+    Model::new(&described, model.engine())
+}
+
+/// The text with a box on the back of the body called torso, which nothing touches.
+fn loaded(mjcf: &str, kg: f32) -> String {
+    let Some((before, body)) = mjcf.split_once("<body name=\"torso\"") else { return mjcf.to_owned() };
+    let Some((attributes, rest)) = body.split_once('>') else { return mjcf.to_owned() };
+    let load = format!(
+        "<geom name=\"load\" type=\"box\" size=\".08 .14 .18\" pos=\"-.2 0 .12\" mass=\"{kg}\" contype=\"0\" conaffinity=\"0\"/>"
+    );
+    format!("{before}<body name=\"torso\"{attributes}>{load}{rest}")
 }
 
 /// The text with every number of an attribute multiplied by a factor.
@@ -133,6 +151,7 @@ mod tests {
             let expected = match name {
                 "mass_x0.8" => (0.8, 4),
                 "mass_x1.2" => (1.2, 4),
+                "load_5kg" => (((model.mass_kg() + 5.0) / model.mass_kg()) as f32, 4),
                 "timestep_x0.5" => (1.0, 8),
                 "timestep_x2" => (1.0, 2),
                 _ => (1.0, 4),

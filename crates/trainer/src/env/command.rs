@@ -2,7 +2,7 @@
 
 use glam::Vec2;
 use physics_bridge::CONTROL_HZ;
-use policy_core::training::{FallDetector, Heights, RISE_SECONDS, SteeringState, fall_height};
+use policy_core::training::{FallDetector, Heights, RISE_SECONDS, SteeringState, step_heights};
 use policy_core::{CharacterState, GraphPosition, NodeId, PathId};
 use random::Rng;
 
@@ -212,7 +212,7 @@ impl Command {
         self.follow_stick(graph, root);
         let (rules, mut next) = (graph.policy_graph(), self.position);
         rules.travel(&mut next, graph.position(self.path, self.assist(graph, state)), DT_SECS);
-        let limits = [self.position, next].map(|position| fall_height(rules, position));
+        let limits = step_heights(rules, [self.position, next]);
         if !self.fall.holds_back(limits, heights, DT_SECS) {
             self.position = next;
             let coordinate = graph.paths().get(self.path.index()).and_then(|path| path.coordinate(next));

@@ -12,6 +12,13 @@ use super::env::{Env, EnvContext};
 /// Length of a push, seconds.
 const PUSH_SECS: f32 = 0.2;
 
+/// Length of a long push, seconds, least and most, and its force as a share of that of a short one.
+const LONG_PUSH_SECS: [f32; 2] = [0.5, 2.0];
+const LONG_PUSH_FORCE: f32 = 0.4;
+
+/// A long push comes from at most this far off straight ahead, radians.
+const LONG_PUSH_ASIDE: f32 = 0.8;
+
 /// From crest to crest of the waves, metres.
 const WAVELENGTH_METRES: f32 = 6.0;
 
@@ -44,6 +51,8 @@ pub struct RandomisationConfig {
     pub push_secs: f32,
     /// Largest force of a push, newton.
     pub push_newton: f32,
+    /// Share of pushes that are long, 0.5 to 2 s with 0.4 of the force, and come from ahead: as if it walked into something.
+    pub long_push_share: f32,
     /// Names of the bodies that are pushed; the root when there are none.
     pub push_bodies: Vec<String>,
 }
@@ -100,10 +109,18 @@ impl Env {
     pub(super) fn push(&mut self, context: &EnvContext<'_>) {
         let config = &context.config.randomisation;
         if config.push_secs > 0.0 && self.rng.chance(DT_SECS / config.push_secs) {
-            let force = Vec2::from_angle(self.rng.angle()) * self.rng.uniform() * config.push_newton;
+            let long = self.rng.chance(config.long_push_share);
+            let (angle, secs, share) = if long {
+                let aside = self.rng.range(-LONG_PUSH_ASIDE, LONG_PUSH_ASIDE);
+                let secs = self.rng.range(LONG_PUSH_SECS[0], LONG_PUSH_SECS[1]);
+                (self.heading().angle() + std::f32::consts::PI + aside, secs, LONG_PUSH_FORCE)
+            } else {
+                (self.rng.angle(), PUSH_SECS, 1.0)
+            };
+            let force = Vec2::from_angle(angle) * self.rng.uniform() * share * config.push_newton;
             let body = context.pushed[self.rng.index(context.pushed.len())];
             self.character
-                .push(body, force.extend(0.0), PUSH_SECS)
+                .push(body, force.extend(0.0), secs)
                 .expect("a recipe's push is between 0 and 5000 newton");
         }
     }

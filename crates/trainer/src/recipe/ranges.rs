@@ -62,6 +62,7 @@ const RANGES: &[(&str, f64, f64)] = &[
     ("environment.randomisation.step_metres", 0.0, 0.5),
     ("environment.randomisation.dynamics", 0.0, 0.5),
     ("environment.randomisation.latency_share", 0.0, 1.0),
+    ("environment.randomisation.long_push_share", 0.0, 1.0),
     ("environment.randomisation.push_secs", 0.0, 1e6),
     ("environment.randomisation.push_newton", 0.0, 5000.0),
     ("ppo.gamma", 0.0, 0.9999),

@@ -92,12 +92,10 @@ impl SteeredCharacter {
         self.state.root().linear_velocity.truncate().length()
     }
 
-    /// True while it lies or gets up.
+    /// True from a fall until it is on its feet again.
     #[must_use]
     pub fn is_down(&self) -> bool {
-        let report = self.report();
-        let recovery = self.controller.pack().recovery();
-        report.fallen || (recovery.is_some() && report.skill.map(|s| s.skill) == recovery)
+        self.controller.is_down()
     }
 
     /// False while a shove acts, and for a character that is down or fast.
