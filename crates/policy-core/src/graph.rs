@@ -21,7 +21,7 @@ pub struct Node {
     /// does. Coming here from a lower gait, such as a crawl, requires standing first: the root 0.1 m above this
     /// height. Standing up for more than 3 s counts as a fall.
     pub fall_height: Option<f32>,
-    /// Speed this policy was trained for, metres per second, where it has one.
+    /// Speed at which a character goes straight ahead here, metres per second, where it has one.
     pub speed_mps: Option<f32>,
 }
 

@@ -52,7 +52,7 @@ pub struct PlannedPolicy {
     /// Root height below which the character has fallen, metres.
     #[serde(default)]
     pub fall_height: Option<f32>,
-    /// Speed it was trained for, metres per second.
+    /// Speed at which it goes straight ahead, metres per second.
     #[serde(default)]
     pub speed_mps: Option<f32>,
 }
