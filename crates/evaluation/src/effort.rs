@@ -3,7 +3,7 @@
 use policy_core::CharacterPack;
 
 use super::Section;
-use super::encounters::{COURSE_SECS, nominal_secs};
+use super::encounters::{RACE_SECS, nominal_secs};
 use super::player::STRAIGHT_COORDINATES;
 use super::press::bound_buttons;
 use super::stress::{CASE_COUNT, GET_UP_SECS, GROUND_COUNT, PadKind, nominal_trials};
@@ -49,7 +49,7 @@ pub struct Effort {
     /// Tries of each encounter with others, balls, crates, a door and stairs.
     pub encounters: usize,
     /// Runs over the playground's course.
-    pub courses: usize,
+    pub races: usize,
 }
 
 impl Effort {
@@ -73,7 +73,7 @@ impl Effort {
         drops_uneven: 200,
         push_step_newton: 10.0,
         encounters: 48,
-        courses: 10,
+        races: 10,
     };
 
     /// Less than three minutes on two idle cores, for a first look.
@@ -96,7 +96,7 @@ impl Effort {
         drops_uneven: 12,
         push_step_newton: 50.0,
         encounters: 4,
-        courses: 1,
+        races: 1,
     };
 
     /// The same with so many characters in every measure; drops and seconds stay.
@@ -148,7 +148,7 @@ impl Effort {
             Section::GetUp => of(GROUND_COUNT * self.drops_uneven, GET_UP_SECS),
             Section::Robustness => roamed * CASE_COUNT as f32,
             Section::Encounters => nominal_secs(self),
-            Section::Course => of(self.courses, COURSE_SECS),
+            Section::Race => of(self.races, RACE_SECS),
             Section::Pushes => gaits as f32 * nominal_trials(self.push_step_newton, self.settled) * 3.0,
         }
     }

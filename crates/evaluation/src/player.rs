@@ -6,7 +6,7 @@ use physics::Engine;
 use policy_core::{PathId, SkillId};
 use serde::{Deserialize, Serialize};
 
-use super::encounters::{CourseReport, EncounterReport, measure_course, measure_encounters};
+use super::encounters::{EncounterReport, RaceReport, measure_encounters, measure_race};
 use super::legs::{LegReport, measure_legs};
 use super::press::{
     JumpReport, PressReport, RiseReport, bound_buttons, button_name, measure_buttons, measure_jumps,
@@ -87,7 +87,7 @@ pub struct PlayerReport {
     pub encounters: By<EncounterReport>,
     /// The playground's course.
     #[serde(skip_serializing_if = "Option::is_none")]
-    pub course: Option<CourseReport>,
+    pub race: Option<RaceReport>,
 }
 
 /// Turns, starts and stops.
@@ -148,8 +148,8 @@ impl PlayerReport {
             Section::Encounters if rig.model.engine() == Engine::Mujoco => {
                 self.encounters = measure_encounters(rig)?;
             }
-            Section::Course if rig.model.engine() == Engine::Mujoco => {
-                self.course = Some(measure_course(rig)?);
+            Section::Race if rig.model.engine() == Engine::Mujoco => {
+                self.race = Some(measure_race(rig)?);
             }
             _ => {}
         }

@@ -44,7 +44,7 @@ pub enum Section {
     /// Others, balls, crates, a door and stairs in a shared world.
     Encounters,
     /// The playground's course.
-    Course,
+    Race,
 }
 
 impl Section {
@@ -70,7 +70,7 @@ impl Section {
         Section::Robustness,
         Section::Pushes,
         Section::Encounters,
-        Section::Course,
+        Section::Race,
     ];
 
     /// Name for command lines.
@@ -97,7 +97,7 @@ impl Section {
             Section::Robustness => "robustness",
             Section::Pushes => "pushes",
             Section::Encounters => "encounters",
-            Section::Course => "course",
+            Section::Race => "race",
         }
     }
 

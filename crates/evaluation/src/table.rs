@@ -199,10 +199,10 @@ fn encounters(text: &mut String, report: &PlayerReport) {
         let shares = [Some(met.stays_up), met.gets_up, met.arrives].map(number);
         line(text, name, [format!("{:>12}", met.characters)].into_iter().chain(shares));
     }
-    if let Some(course) = &report.course {
-        head(text, "course", ["no fall", "finished", "seconds"]);
-        let counts = [course.without_a_fall, course.finished].map(|count| share(count, course.runs));
-        line(text, "", counts.into_iter().chain([number(course.secs)]));
+    if let Some(race) = &report.race {
+        head(text, "race", ["no fall", "finished", "seconds"]);
+        let counts = [race.without_a_fall, race.finished].map(|count| share(count, race.runs));
+        line(text, "", counts.into_iter().chain([number(race.secs)]));
     }
 }
 

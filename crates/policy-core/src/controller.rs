@@ -19,7 +19,7 @@ use crate::pack::CharacterPack;
 use crate::path::GraphPosition;
 use crate::report::{StateFault, TickReport};
 use crate::scorer::Scorer;
-use crate::skill::SkillEnd;
+use crate::skill::{SkillEnd, SkillProgress};
 use crate::state::{CharacterState, JointTargets};
 use crate::steering::{Steering, SteeringState};
 use crate::turn_assist::TurnAssist;
@@ -79,6 +79,24 @@ impl Default for ControllerConfig {
             steering: Some(Steering::default()),
         }
     }
+}
+
+/// A recovery that takes so long is stuck, seconds: a policy without noise that rests against something stays there for good.
+const STUCK_SECONDS: f32 = 3.0;
+
+/// From then on another policy acts so long, once in this time, seconds.
+const WAY_OUT_SECONDS: [f32; 2] = [1.0, 2.5];
+
+/// The lowest gait of the paths, to move a character on whose recovery is stuck; `None` while it is not.
+fn way_out(pack: &CharacterPack, progress: SkillProgress) -> Option<NodeId> {
+    let late = progress.seconds - STUCK_SECONDS;
+    let [acts, every] = WAY_OUT_SECONDS;
+    if pack.recovery() != Some(progress.skill) || late < 0.0 || libm::fmodf(late, every) >= acts {
+        return None;
+    }
+    let height = |node: &NodeId| pack.graph().node(*node).fall_height.unwrap_or(0.0);
+    let nodes = pack.graph().paths().iter().flat_map(|path| path.nodes().iter().copied());
+    nodes.min_by(|a, b| height(a).total_cmp(&height(b)))
 }
 
 /// Steers one character: turns what it senses and what the game asks into joint targets.
@@ -259,7 +277,7 @@ impl Controller {
         }
         let heights = Heights::of(self.pack.skeleton(), state);
         self.run_skill(state, heights, dt);
-        self.detect_fall(heights, dt);
+        self.detect_fall(state, dt);
         self.request_skill(command.skill, state, heights, dt);
         let assist = self.config.turn_assist.filter(|_| self.state.report.pending_skill.is_none());
         let command = assist.map_or(*command, |a| a.adjusted(self.pack.graph(), state, command));
@@ -332,7 +350,10 @@ impl Controller {
         let manual = command.blend.filter(|b| is_valid(b, self.pack.policies().len()));
         let report = &mut self.state.report;
         report.blend = match (report.skill, manual) {
-            (Some(progress), _) => Blend::single(self.pack.skills()[progress.skill.index()].policy),
+            (Some(progress), _) => match way_out(&self.pack, progress) {
+                Some(node) => GraphPosition::node(node).blend(),
+                None => Blend::single(self.pack.skills()[progress.skill.index()].policy),
+            },
             (None, Some(blend)) => blend,
             (None, None) => self.state.fall.acting_position(report.position).blend(),
         };

@@ -3,6 +3,8 @@
 //! A character has fallen when its root stays lower than the policies in use allow. Leaving a low gait requires
 //! standing first.
 
+use glam::Vec3;
+
 use crate::graph::PolicyGraph;
 use crate::path::GraphPosition;
 use crate::skeleton::Skeleton;
@@ -16,6 +18,15 @@ const RISEN_METRES: f32 = 0.1;
 
 /// Its head must be this much above the root as well, metres: a character with its head down is about to go down again.
 const HEAD_UP_METRES: f32 = 0.2;
+
+/// A gait is upright when its fall height is at least this share of the greatest of the graph.
+const UPRIGHT_SHARE: f32 = 0.75;
+
+/// A root that leans over by more than the angle of this cosine lies. It may lie on something that is high.
+const LYING_COSINE: f32 = 0.5;
+
+/// Seconds that the root must lie.
+const LYING_SECONDS: f32 = 1.5;
 
 /// Seconds that standing up may take, out of a low gait, before it counts as a fall.
 pub const RISE_SECONDS: f32 = 3.0;
@@ -64,6 +75,14 @@ pub fn fall_height(graph: &PolicyGraph, position: GraphPosition) -> Option<f32> 
         Some(node) => graph.node(node).fall_height,
         None => Some(graph.node(position.from).fall_height?.min(graph.node(position.to).fall_height?)),
     }
+}
+
+/// True when the root leans over far, where by its fall height a character stands as high as anywhere on the graph, or nearly so.
+#[must_use]
+pub(crate) fn lies(graph: &PolicyGraph, limit: Option<f32>, state: &CharacterState) -> bool {
+    let greatest = graph.nodes().iter().filter_map(|node| node.fall_height).fold(0.0, f32::max);
+    let upright = limit.is_some_and(|limit| limit >= UPRIGHT_SHARE * greatest);
+    upright && (state.root().rotation * Vec3::Z).z < LYING_COSINE
 }
 
 /// Fall heights of a step along the graph, for [`FallDetector::holds_back`]: where it begins, and where it leads. An edge
@@ -128,10 +147,15 @@ impl FallDetector {
         GraphPosition { t: t.clamp(0.0, 1.0), ..position }
     }
 
-    /// Takes the root's height above the ground; true while the character has fallen.
-    pub fn tick(&mut self, limit: Option<f32>, root_height: f32, dt_secs: f32) -> bool {
+    /// Takes the root's height above the ground, and whether it lies; true while the character has fallen.
+    pub fn tick(&mut self, limit: Option<f32>, lies: bool, root_height: f32, dt_secs: f32) -> bool {
         let low = limit.is_some_and(|limit| root_height < limit);
-        self.low_seconds = if low { self.low_seconds + dt_secs } else { 0.0 };
+        self.low_seconds = match (low, lies) {
+            (true, _) => self.low_seconds + dt_secs,
+            // In the same count: what lies is low for some time and then high.
+            (false, true) => self.low_seconds + dt_secs * FALL_SECONDS / LYING_SECONDS,
+            (false, false) => 0.0,
+        };
         self.low_seconds >= FALL_SECONDS || self.rising_seconds >= RISE_SECONDS
     }
 }
@@ -146,12 +170,25 @@ mod tests {
     }
 
     #[test]
+    fn a_root_that_lies_on_something_high_is_a_fall() {
+        let ticks = |lies: bool| {
+            let mut fall = FallDetector::default();
+            (1..100).find(|_| fall.tick(Some(0.5), lies, 0.6, 0.1))
+        };
+        assert!(ticks(true).is_some_and(|ticks| (15..=16).contains(&ticks)), "{:?}", ticks(true));
+        assert_eq!(ticks(false), None);
+        let mut fall = FallDetector::default();
+        // It stumbles, and catches itself.
+        assert!((0..60).all(|tick| !fall.tick(Some(0.5), tick % 20 < 12, 0.85, 0.1)));
+    }
+
+    #[test]
     fn a_late_rise_swings_along_the_edge_until_its_time_is_over() {
         let mut fall = FallDetector::default();
         let held = GraphPosition { from: NodeId::new(4), to: NodeId::new(5), t: 0.01 };
         let mut places = alloc::vec::Vec::new();
         let mut ticks = 0;
-        while !fall.tick(None, 0.3, 0.1) {
+        while !fall.tick(None, false, 0.3, 0.1) {
             assert!(fall.holds_back([Some(0.2), Some(0.4)], heights(0.3, 0.7), 0.1));
             // Up to rounding: not at eight tenths, but at nine.
             assert!(ticks == 7 || fall.is_late() == (ticks > 7), "{ticks}");

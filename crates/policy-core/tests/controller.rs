@@ -127,6 +127,29 @@ fn a_fall_starts_the_recovery_and_lying_on_repeats_it() {
 }
 
 #[test]
+fn a_recovery_that_is_stuck_acts_as_the_lowest_gait_now_and_then() {
+    let mut manifest = common::manifest();
+    manifest.skills.iter_mut().for_each(|skill| skill.end.limit_seconds = 8.0);
+    let pack = CharacterPack::from_parts(manifest, common::tensors(-4.0)).unwrap();
+    let crawl = pack.graph().node_named("crawl").unwrap();
+    let mut controller = Controller::new(Arc::new(pack));
+    let mut lying = standing();
+    lying.bodies[0].position.z = 0.2;
+    let (mut others, mut ticks) = (Vec::new(), 0.0);
+    while controller.report().skill_ended.is_none() {
+        controller.tick(&lying, &Command::default(), DT);
+        let recovers = controller.report().skill.is_some();
+        ticks += f32::from(u8::from(recovers));
+        if recovers && controller.report().blend == GraphPosition::node(crawl).blend() {
+            others.push(ticks * DT);
+        }
+    }
+    assert!((2.9..3.2).contains(&others[0]), "{others:?}");
+    assert!((58..=62).contains(&others.len()), "two seconds of eight: {others:?}");
+    assert!(others.iter().all(|secs| !(4.2..5.4).contains(secs)), "{others:?}");
+}
+
+#[test]
 fn low_is_no_fall_where_the_policy_is_low_and_none_without_recovery() {
     let mut lying = standing();
     lying.bodies[0].position.z = 0.3;

@@ -224,10 +224,12 @@ fn wrong_sizes_and_wrong_rates_are_reported() {
 }
 
 #[test]
-fn turn_assist_slows_fast_gaits_down_and_leaves_a_crouch() {
+fn turn_assist_slows_fast_gaits_down_and_leaves_low_gaits() {
     let (mut manifest, tensors) = (common::manifest(), common::tensors(0.0));
     let speeds = [0.0, 1.25, 2.8, 3.5, 0.4, 0.3];
     manifest.policies.iter_mut().zip(speeds).for_each(|(p, speed)| p.speed_mps = Some(speed));
+    let upright = CharacterPack::from_parts(manifest.clone(), tensors.clone()).unwrap();
+    manifest.policies[4].fall_height = Some(0.4);
     let pack = CharacterPack::from_parts(manifest, tensors).unwrap();
     let coordinate = |path: usize, coordinate: f32, target: Vec2| {
         let goal = Goal::Path { path: PathId::new(path), coordinate };
@@ -246,6 +248,11 @@ fn turn_assist_slows_fast_gaits_down_and_leaves_a_crouch() {
     assert!((1.2..2.9).contains(&coordinate(0, 3.0, aside)));
     assert_eq!([ahead, behind].map(|t| coordinate(0, 0.4, t)), [0.4, 1.0]);
     assert_eq!([1.5, 2.0, 3.0].map(|c| coordinate(1, c, behind)), [1.5, 2.0, 3.0], "a crouch stays a crouch");
+    let goal = Goal::Path { path: PathId::new(1), coordinate: 2.0 };
+    let command = Command { target: Some(behind), goal, ..Command::default() };
+    let turning = Goal::Path { path: PathId::new(1), coordinate: 1.0 };
+    let adjusted = TurnAssist::default().adjusted(upright.graph(), &standing(), &command);
+    assert_eq!(adjusted.goal, turning, "a slow gait that stands as high turns as the other");
     assert_eq!(coordinate(0, 3.0, Vec2::ZERO), 3.0);
     // As if the stick were pushed as far as the coordinate is raised.
     assert_eq!([0.5, 1.0, 3.0].map(|c| further(0, c, behind)), [2.0 * behind, behind, behind]);

@@ -42,7 +42,11 @@ const RULES: &[Rule] = &[
     rule("physics", &["policy-core", "physics-bridge", "physics-rapier"], &[]),
     rule("random", &["policy-core"], &["physics-bridge"]),
     rule("clips", &["policy-core", "physics-bridge", "files"], &[]),
-    rule("evaluation", &["policy-core", "physics", "physics-bridge", "clips", "random", "pca"], &[]),
+    rule(
+        "evaluation",
+        &["policy-core", "physics", "physics-bridge", "clips", "random", "pca", "playground"],
+        &[],
+    ),
     rule(
         "trainer",
         &["policy-core", "physics", "physics-bridge", "clips", "random", "files", "evaluation"],

@@ -4,15 +4,15 @@
 
 mod cases;
 mod cast;
-mod course;
+mod race;
 
 use serde::{Deserialize, Serialize};
 
 pub use cases::measure_encounters;
-pub use course::{CourseReport, measure_course};
+pub use race::{RaceReport, measure_race};
 
 pub(super) use cases::nominal_secs;
-pub(super) use course::NOMINAL_SECS as COURSE_SECS;
+pub(super) use race::NOMINAL_SECS as RACE_SECS;
 
 /// Seconds within which one that fell is to be up again.
 const RISE_SECS: f32 = 6.0;

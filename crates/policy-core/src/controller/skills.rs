@@ -7,7 +7,7 @@ use glam::Vec2;
 use super::Controller;
 use crate::command::Command;
 use crate::controller_state::ControllerState;
-use crate::fall::{Heights, fall_height};
+use crate::fall::{Heights, fall_height, lies};
 use crate::heading::Heading;
 use crate::ids::SkillId;
 use crate::observation::TARGET_RANGE_METRES;
@@ -43,13 +43,14 @@ impl Controller {
     }
 
     /// Starts the recovery skill after a fall.
-    pub(super) fn detect_fall(&mut self, heights: Heights, dt: f32) {
+    pub(super) fn detect_fall(&mut self, state: &CharacterState, dt: f32) {
         let report = &mut self.state.report;
         let limit = match report.skill {
             Some(_) => None,
             None => fall_height(self.pack.graph(), report.position),
         };
-        report.fallen = self.state.fall.tick(limit, heights.root, dt);
+        let lies = lies(self.pack.graph(), limit, state);
+        report.fallen = self.state.fall.tick(limit, lies, state.root_height(), dt);
         let recovery = self.pack.recovery().filter(|_| self.config.auto_recover && report.fallen);
         if let Some(recovery) = recovery {
             self.start_skill(recovery);

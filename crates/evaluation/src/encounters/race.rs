@@ -70,7 +70,7 @@ const WAY: [(f32, f32, f32, Pace); 26] = [
 /// Runs over the course.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(default)]
-pub struct CourseReport {
+pub struct RaceReport {
     /// Runs, each with its own seed.
     pub runs: usize,
     /// Runs that came to the end without a fall.
@@ -90,14 +90,14 @@ type Run = (Option<f32>, Vec<[f32; 2]>);
 ///
 /// # Errors
 /// When the scene is none, or the character can't be put into it.
-pub fn measure_course(rig: &Rig<'_>) -> Result<CourseReport, EvaluationError> {
-    let Some(walk) = Gait::named(rig.pack, "walk") else { return Ok(CourseReport::default()) };
+pub fn measure_race(rig: &Rig<'_>) -> Result<RaceReport, EvaluationError> {
+    let Some(walk) = Gait::named(rig.pack, "walk") else { return Ok(RaceReport::default()) };
     let scene = Playground::shipped()?;
-    let seeds: Vec<u64> = (0..rig.effort.courses as u64).collect();
+    let seeds: Vec<u64> = (0..rig.effort.races as u64).collect();
     let runs = rig.each(&seeds, NOMINAL_SECS, |seed| run(rig, &walk, &scene, *seed));
     let runs: Vec<Run> = runs.into_iter().collect::<Result<_, WorldError>>()?;
     let secs: Vec<f32> = runs.iter().filter_map(|(secs, _)| *secs).collect();
-    Ok(CourseReport {
+    Ok(RaceReport {
         runs: runs.len(),
         without_a_fall: runs.iter().filter(|(secs, falls)| secs.is_some() && falls.is_empty()).count(),
         finished: secs.len(),
