@@ -81,14 +81,24 @@ impl Default for ControllerConfig {
     }
 }
 
-/// A recovery that takes so long is stuck, seconds: a policy without noise that rests against something stays there for good.
-const STUCK_SECONDS: f32 = 3.0;
+/// A recovery that takes so long and is still may be stuck, seconds: a policy without noise that rests against something stays
+/// there for good.
+const STUCK_SECONDS: f32 = 2.5;
 
-/// From then on another policy acts so long, once in this time, seconds.
-const WAY_OUT_SECONDS: [f32; 2] = [1.0, 2.5];
+/// A root slower than this is still, metres and radians per second.
+const STILL: [f32; 2] = [0.05, 0.2];
 
-/// The lowest gait of the paths, to move a character on whose recovery is stuck; `None` while it is not.
-fn way_out(pack: &CharacterPack, progress: SkillProgress) -> Option<NodeId> {
+/// From then on another policy may act so long, once in this time, seconds.
+const WAY_OUT_SECONDS: [f32; 2] = [1.0, 1.5];
+
+/// The lowest gait of the paths, to move a character on whose recovery is stuck; `None` while it is not. Once it acts it goes on
+/// for the rest of its time: `before` is the blend of the last tick.
+fn way_out(
+    pack: &CharacterPack,
+    progress: SkillProgress,
+    state: &CharacterState,
+    before: Blend,
+) -> Option<Blend> {
     let late = progress.seconds - STUCK_SECONDS;
     let [acts, every] = WAY_OUT_SECONDS;
     if pack.recovery() != Some(progress.skill) || late < 0.0 || libm::fmodf(late, every) >= acts {
@@ -96,7 +106,10 @@ fn way_out(pack: &CharacterPack, progress: SkillProgress) -> Option<NodeId> {
     }
     let height = |node: &NodeId| pack.graph().node(*node).fall_height.unwrap_or(0.0);
     let nodes = pack.graph().paths().iter().flat_map(|path| path.nodes().iter().copied());
-    nodes.min_by(|a, b| height(a).total_cmp(&height(b)))
+    let lowest = GraphPosition::node(nodes.min_by(|a, b| height(a).total_cmp(&height(b)))?).blend();
+    let root = state.root();
+    let still = root.linear_velocity.length() < STILL[0] && root.angular_velocity.length() < STILL[1];
+    (still || before == lowest).then_some(lowest)
 }
 
 /// Steers one character: turns what it senses and what the game asks into joint targets.
@@ -282,7 +295,7 @@ impl Controller {
         let assist = self.config.turn_assist.filter(|_| self.state.report.pending_skill.is_none());
         let command = assist.map_or(*command, |a| a.adjusted(self.pack.graph(), state, command));
         self.travel(&command, heights, dt);
-        self.choose_blend(&command);
+        self.choose_blend(state, &command);
         self.observe(state, &command, dt);
         true
     }
@@ -346,14 +359,12 @@ impl Controller {
         }
     }
 
-    fn choose_blend(&mut self, command: &Command) {
+    fn choose_blend(&mut self, state: &CharacterState, command: &Command) {
         let manual = command.blend.filter(|b| is_valid(b, self.pack.policies().len()));
         let report = &mut self.state.report;
         report.blend = match (report.skill, manual) {
-            (Some(progress), _) => match way_out(&self.pack, progress) {
-                Some(node) => GraphPosition::node(node).blend(),
-                None => Blend::single(self.pack.skills()[progress.skill.index()].policy),
-            },
+            (Some(progress), _) => way_out(&self.pack, progress, state, report.blend)
+                .unwrap_or_else(|| Blend::single(self.pack.skills()[progress.skill.index()].policy)),
             (None, Some(blend)) => blend,
             (None, None) => self.state.fall.acting_position(report.position).blend(),
         };
