@@ -27,6 +27,7 @@ pub fn pack(model: &Model, mjcf: &str) -> CharacterPack {
         layers: policy_sizes.into(),
         fall_height: None,
         speed_mps: None,
+        strafes: false,
         origin: "made up".into(),
     };
     let end = EndEntry {

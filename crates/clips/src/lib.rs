@@ -15,6 +15,7 @@ mod motion;
 mod npy;
 mod pickle;
 mod pickle_machine;
+mod side_steps;
 
 pub use error::ClipError;
 pub use fitted::{FitError, Fitted, fit};
@@ -178,6 +179,25 @@ impl Clip {
             local_rotations: self.local_rotations.iter().map(turn).collect(),
             ..self.clone()
         })
+    }
+
+    /// The same backwards: walking ahead becomes walking back.
+    #[must_use]
+    pub fn reversed(&self) -> Self {
+        let end = self.duration();
+        Self {
+            name: format!("{} (reversed)", self.name),
+            times: self.times.iter().rev().map(|t| end - t).collect(),
+            root_positions: self.root_positions.iter().rev().copied().collect(),
+            local_rotations: self.local_rotations.iter().rev().cloned().collect(),
+            ..self.clone()
+        }
+    }
+
+    /// The same played faster or slower, by a factor above 0.
+    #[must_use]
+    pub fn at_pace(&self, factor: f32) -> Self {
+        Self { times: self.times.iter().map(|t| t / factor).collect(), ..self.clone() }
     }
 
     /// The mirror image: y negated, and bodies with `left` in their names swapped with those with `right`.

@@ -212,3 +212,46 @@ fn an_excerpt_has_the_frames_of_its_seconds_and_no_others() {
         assert!(error.contains("expected an excerpt [from, to]"), "{error}");
     }
 }
+
+#[test]
+fn a_clip_backwards_goes_back_and_a_pace_changes_its_time_alone() {
+    let clip = swinging();
+    let back = clip.reversed().checked().unwrap();
+    assert_eq!((back.times[0], back.duration()), (0.0, clip.duration()));
+    assert!((back.cycle_offset() + clip.cycle_offset()).length() < 1e-6);
+    assert_eq!(back.local_rotations[40], clip.local_rotations[80]);
+    let slow = clip.at_pace(0.5).checked().unwrap();
+    assert!((slow.duration() - 2.0 * clip.duration()).abs() < 1e-6);
+    assert_eq!(slow.local_rotations, clip.local_rotations);
+}
+
+#[test]
+fn side_steps_go_left_in_a_cycle_and_plant_their_feet() {
+    let clip = still(2).side_steps(0.5).unwrap();
+    assert!(clip.looping && (clip.cycle_offset().y / clip.duration() - 0.5).abs() < 1e-4);
+    let model = physics_bridge::Model::load(
+        std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("../../assets/humanoid.xml"),
+    );
+    let model = model.unwrap();
+    let fitted = fit(&clip, &model).unwrap();
+    assert!(fitted.clearances.iter().all(|clearance| *clearance > -0.02), "nothing is far in the ground");
+    // The lower foot stands, and what stands stays.
+    let slip = fitted.states.iter().map(|state| {
+        let feet = ["left_foot", "right_foot"].map(|foot| state.bodies[body(foot)]);
+        let lower = if feet[0].position.z < feet[1].position.z { feet[0] } else { feet[1] };
+        lower.linear_velocity.truncate().length()
+    });
+    let mean = slip.sum::<f32>() / fitted.states.len() as f32;
+    assert!(mean < 0.15, "{mean} m/s");
+    let swung = fitted.states.iter().map(|s| s.bodies[body("left_foot")].position.z);
+    let (least, most) = swung.fold((9.0_f32, 0.0_f32), |(a, b), z| (a.min(z), b.max(z)));
+    assert!((0.03..0.2).contains(&(most - least)), "{least} to {most} m");
+}
+
+#[test]
+fn side_steps_need_legs() {
+    let mut clip = still(2);
+    clip.bodies = clip.bodies.iter().map(|name| name.replace("left_shin", "calf")).collect();
+    let said = clip.side_steps(0.5).unwrap_err().to_string();
+    assert!(said.contains("left_shin") && said.contains("calf"), "{said}");
+}

@@ -139,6 +139,8 @@ impl Effort {
             Section::Starts => of(self.settled, 7.5),
             Section::Stops => of(gaits * self.settled, 3.5),
             Section::Straight => of(paths * STRAIGHT_COORDINATES * self.straight, 9.0),
+            Section::Strafe if graph.path_named("strafe").is_none() => 0.0,
+            Section::Strafe => of(8 * self.settled, 8.0),
             Section::Rise => of(self.settled, 5.0),
             Section::Buttons => of(gaits * self.pressed * bound_buttons(pack).len(), 6.0),
             Section::Jumps => of(self.settled * pack.skills().len(), 4.0),

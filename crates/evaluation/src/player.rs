@@ -14,8 +14,8 @@ use super::press::{
 };
 use super::report::coordinates;
 use super::response::{
-    StartReport, StopReport, StraightPoint, TurnReport, measure_starts, measure_stops, measure_straight,
-    measure_turns,
+    StartReport, StopReport, StrafeReport, StraightPoint, TurnReport, measure_starts, measure_stops,
+    measure_strafe, measure_straight, measure_turns,
 };
 use super::stress::{
     FallReport, GetUpReport, RandomPadReport, SidesReport, measure_get_up_on_terrain, measure_pushes,
@@ -43,6 +43,9 @@ pub struct PlayerReport {
     /// By path: everything that was measured at the same coordinates.
     #[serde(skip_serializing_if = "BTreeMap::is_empty")]
     pub straight: By<Vec<StraightPoint>>,
+    /// By the way it goes from where it faces.
+    #[serde(skip_serializing_if = "BTreeMap::is_empty")]
+    pub strafe: By<StrafeReport>,
     /// From a crawl to its feet.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub crawl_to_upright: Option<RiseReport>,
@@ -130,6 +133,7 @@ impl PlayerReport {
                 self.response.stop = rig.gaits().into_iter().filter(Gait::moves).map(stops).collect();
             }
             Section::Straight => self.measure_straight(rig),
+            Section::Strafe => self.strafe = measure_strafe(rig),
             Section::Rise => self.crawl_to_upright = Some(measure_rise(rig)),
             Section::Buttons => self.measure_buttons(rig),
             Section::Jumps => self.joint_target_jump = Some(measure_jumps(rig)),

@@ -23,6 +23,8 @@ pub enum Section {
     Stops,
     /// Drift and speed straight ahead.
     Straight,
+    /// Facing one way and moving another.
+    Strafe,
     /// From a crawl to its feet.
     Rise,
     /// Presses of every button in every gait.
@@ -49,7 +51,7 @@ pub enum Section {
 
 impl Section {
     /// All sections, in the order in which they are measured.
-    pub const ALL: [Section; 21] = [
+    pub const ALL: [Section; 22] = [
         Section::Paths,
         Section::Upright,
         Section::Push,
@@ -60,6 +62,7 @@ impl Section {
         Section::Starts,
         Section::Stops,
         Section::Straight,
+        Section::Strafe,
         Section::Rise,
         Section::Buttons,
         Section::Jumps,
@@ -87,6 +90,7 @@ impl Section {
             Section::Starts => "starts",
             Section::Stops => "stops",
             Section::Straight => "straight",
+            Section::Strafe => "strafe",
             Section::Rise => "rise",
             Section::Buttons => "buttons",
             Section::Jumps => "jumps",

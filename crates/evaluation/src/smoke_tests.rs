@@ -55,6 +55,7 @@ fn pack(falls: bool) -> Arc<CharacterPack> {
         layers: vec![inputs, 4, joints],
         fall_height: falls.then_some(0.5),
         speed_mps: Some(if name == "idle" { 0.0 } else { 1.0 }),
+        strafes: false,
         origin: "made up".into(),
     };
     let edge = |a: &str, b: &str| EdgeEntry {

@@ -18,6 +18,7 @@ pub fn table(report: &PlayerReport) -> String {
     turns(&mut text, report);
     starts_and_stops(&mut text, report);
     straight(&mut text, report);
+    strafe(&mut text, report);
     presses(&mut text, report);
     legs(&mut text, report);
     random_pad(&mut text, report);
@@ -68,11 +69,22 @@ fn turns(text: &mut String, report: &PlayerReport) {
     if turns.is_empty() {
         return;
     }
-    head(text, "turn", ["median, s", "p90, s", "left, s", "right, s", "metres", "never", "falls"]);
+    head(
+        text,
+        "turn",
+        ["median, s", "p90, s", "left, s", "right, s", "faces, s", "metres", "never", "falls"],
+    );
     for (gait, turns) in turns {
         for degrees in TURNS_DEGREES {
             let Some(turn) = turns.get(&format!("turn_{degrees}")) else { continue };
-            let numbers = [turn.median_s, turn.p90_s, turn.left_median_s, turn.right_median_s, turn.metres];
+            let numbers = [
+                turn.median_s,
+                turn.p90_s,
+                turn.left_median_s,
+                turn.right_median_s,
+                turn.facing_median_s,
+                turn.metres,
+            ];
             let counts = [turn.never, turn.falls].map(|count| share(count, turn.trials));
             line(text, &format!("{gait} {degrees}"), numbers.map(number).into_iter().chain(counts));
         }
@@ -110,6 +122,18 @@ fn straight(text: &mut String, report: &PlayerReport) {
             let falls = [share(point.falls, point.trials)];
             line(text, &format!("{:.2}", point.coordinate), numbers.map(number).into_iter().chain(falls));
         }
+    }
+}
+
+fn strafe(text: &mut String, report: &PlayerReport) {
+    if !report.strafe.is_empty() {
+        head(text, "strafe", ["is, m/s", "drift, deg", "heading", "camera, s", "falls"]);
+    }
+    for (way, strafe) in &report.strafe {
+        let numbers =
+            [strafe.reached_mps, strafe.drift_degrees, strafe.heading_degrees, strafe.camera_turn_s];
+        let falls = [share(strafe.falls, strafe.trials)];
+        line(text, way, numbers.map(number).into_iter().chain(falls));
     }
 }
 
@@ -224,6 +248,6 @@ mod tests {
         report.response.turns.insert("walk".into(), [("turn_90".into(), turn)].into());
         let text = table(&report);
         let words: Vec<&str> = text.lines().last().unwrap().split_whitespace().collect();
-        assert_eq!(words, ["walk", "90", "-", "2.50", "-", "-", "-", "3/4", "0/4"]);
+        assert_eq!(words, ["walk", "90", "-", "2.50", "-", "-", "-", "-", "3/4", "0/4"]);
     }
 }

@@ -303,6 +303,8 @@ typedef struct PsNode {
   float fall_height;
   // Speed that the policy was trained for, metres per second; NaN where it has none.
   float speed_mps;
+  // 1 for a policy that faces one way and moves another, else 0.
+  int32_t strafes;
 } PsNode;
 
 // Choices that are made once for a controller. Fill it with ps_config_default, then change what you want.
@@ -383,6 +385,10 @@ typedef struct PsCommand {
   int32_t has_target;
   // Point on the ground, world x and y, metres.
   float target[2];
+  // Not 0: face along `facing`, with a policy that strafes. 0: face the target.
+  int32_t has_facing;
+  // Direction to face, world x and y, of any length.
+  float facing[2];
   // PsGoal.
   int32_t goal;
   // The path or node of the goal.

@@ -38,6 +38,10 @@ pub struct PsCommand {
     pub has_target: i32,
     /// Point on the ground, world x and y, metres.
     pub target: [f32; 2],
+    /// Not 0: face along `facing`, with a policy that strafes. 0: face the target.
+    pub has_facing: i32,
+    /// Direction to face, world x and y, of any length.
+    pub facing: [f32; 2],
     /// PsGoal.
     pub goal: i32,
     /// The path or node of the goal.
@@ -59,6 +63,8 @@ impl Default for PsCommand {
         Self {
             has_target: 0,
             target: [0.0; 2],
+            has_facing: 0,
+            facing: [0.0; 2],
             goal: PsGoal::Stay as i32,
             goal_index: 0,
             coordinate: 0.0,
@@ -76,13 +82,12 @@ impl PsCommand {
     /// # Safety
     /// `blend` is as the contract of every function says.
     pub(crate) unsafe fn checked(&self, pack: &CharacterPack) -> Result<Command, PsStatus> {
-        let target = match self.has_target {
-            0 => None,
-            _ => {
-                let [x, y] = self.target;
-                Some(Vec2::new(finite("the target", x)?, finite("the target", y)?))
-            }
+        let vector = |what, has: i32, [x, y]: [f32; 2]| match has {
+            0 => Ok(None),
+            _ => Ok(Some(Vec2::new(finite(what, x)?, finite(what, y)?))),
         };
+        let target = vector("the target", self.has_target, self.target)?;
+        let facing = vector("the way to face", self.has_facing, self.facing)?;
         let graph = pack.graph();
         let goal = match self.goal {
             0 => Goal::Stay,
@@ -102,7 +107,7 @@ impl PsCommand {
         };
         // SAFETY: the caller's promise is passed on.
         let blend = unsafe { self.blend(pack) }?;
-        Ok(Command { target, goal, skill, blend })
+        Ok(Command { target, facing, goal, skill, blend })
     }
 
     /// The blend that replaces the position.

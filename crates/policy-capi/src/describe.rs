@@ -65,6 +65,8 @@ pub struct PsNode {
     pub fall_height: f32,
     /// Speed that the policy was trained for, metres per second; NaN where it has none.
     pub speed_mps: f32,
+    /// 1 for a policy that faces one way and moves another, else 0.
+    pub strafes: i32,
 }
 
 /// Writes sizes and rates.
@@ -159,6 +161,7 @@ pub extern "C" fn ps_pack_node(
         out.write(PsNode {
             fall_height: node.fall_height.unwrap_or(f32::NAN),
             speed_mps: node.speed_mps.unwrap_or(f32::NAN),
+            strafes: i32::from(node.strafes),
         });
         Ok(())
     })

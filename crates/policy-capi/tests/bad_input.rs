@@ -155,6 +155,7 @@ fn bad_commands_are_errors_and_nothing_happens() {
         (PsCommand { goal: PsGoal::Node as i32, goal_index: 9, ..walking() }, index, "node"),
         (PsCommand { coordinate: f32::NAN, ..walking() }, number, "coordinate"),
         (PsCommand { target: [0.0, f32::NAN], ..walking() }, number, "target"),
+        (PsCommand { has_facing: 1, facing: [f32::NAN, 0.0], ..walking() }, number, "the way to face"),
         (PsCommand { has_skill: 1, ..walking() }, index, "skill"),
         (PsCommand { blend: terms.as_ptr(), blend_count: 1, ..walking() }, number, "blend weight"),
         (PsCommand { blend: terms.as_ptr(), blend_count: 9, ..walking() }, PsStatus::WrongCount, "at most 8"),

@@ -76,7 +76,7 @@ pub struct Bindings {
 }
 
 impl Default for Bindings {
-    /// Stick and right trigger `speed`, left trigger `stance`, right shoulder `style`; south `get_up`, east `roll`, north
+    /// Stick and right trigger `speed`, left trigger `stance`, right shoulder `style`, right stick pressed `strafe`; south `get_up`, east `roll`, north
     /// `jump`, west `kick`.
     fn default() -> Self {
         let skills = [
@@ -85,11 +85,12 @@ impl Default for Bindings {
             (Button::North, "jump"),
             (Button::West, "kick"),
         ];
-        let style = Control::Button(Button::RightShoulder);
+        let [style, strafe] = [Button::RightShoulder, Button::RightStick].map(Control::Button);
         Self {
             stick_path: "speed".into(),
             faster: Control::RightTrigger,
             paths: alloc::vec![
+                PathBinding { path: "strafe".into(), control: strafe, first: 2.0, needs_stick: false },
                 PathBinding { path: "style".into(), control: style, first: 1.0, needs_stick: true },
                 PathBinding {
                     path: "stance".into(),

@@ -44,6 +44,9 @@ impl Goal {
 pub struct Command {
     /// Point on the ground to go to, world space, metres; `None`: where it stands.
     pub target: Option<Vec2>,
+    /// Direction to face, world space, of any length; `None`: where it goes. Only policies that strafe
+    /// ([`Node::strafes`](crate::training::Node::strafes)) face one way and move another; the others turn to the target.
+    pub facing: Option<Vec2>,
     /// Where on the graph to go.
     pub goal: Goal,
     /// A skill to start. It stays pending until the position on the graph allows it or

@@ -19,9 +19,10 @@ use crate::pack::CharacterPack;
 use crate::path::GraphPosition;
 use crate::report::{StateFault, TickReport};
 use crate::scorer::Scorer;
-use crate::skill::{SkillEnd, SkillProgress};
+use crate::skill::SkillEnd;
 use crate::state::{CharacterState, JointTargets};
 use crate::steering::{Steering, SteeringState};
+use crate::strafe::{face_in_observation, strafing_share};
 use crate::turn_assist::TurnAssist;
 
 mod skills;
@@ -79,37 +80,6 @@ impl Default for ControllerConfig {
             steering: Some(Steering::default()),
         }
     }
-}
-
-/// A recovery that takes so long and is still may be stuck, seconds: a policy without noise that rests against something stays
-/// there for good.
-const STUCK_SECONDS: f32 = 2.5;
-
-/// A root slower than this is still, metres and radians per second.
-const STILL: [f32; 2] = [0.05, 0.2];
-
-/// From then on another policy may act so long, once in this time, seconds.
-const WAY_OUT_SECONDS: [f32; 2] = [1.0, 1.5];
-
-/// The lowest gait of the paths, to move a character on whose recovery is stuck; `None` while it is not. Once it acts it goes on
-/// for the rest of its time: `before` is the blend of the last tick.
-fn way_out(
-    pack: &CharacterPack,
-    progress: SkillProgress,
-    state: &CharacterState,
-    before: Blend,
-) -> Option<Blend> {
-    let late = progress.seconds - STUCK_SECONDS;
-    let [acts, every] = WAY_OUT_SECONDS;
-    if pack.recovery() != Some(progress.skill) || late < 0.0 || libm::fmodf(late, every) >= acts {
-        return None;
-    }
-    let height = |node: &NodeId| pack.graph().node(*node).fall_height.unwrap_or(0.0);
-    let nodes = pack.graph().paths().iter().flat_map(|path| path.nodes().iter().copied());
-    let lowest = GraphPosition::node(nodes.min_by(|a, b| height(a).total_cmp(&height(b)))?).blend();
-    let root = state.root();
-    let still = root.linear_velocity.length() < STILL[0] && root.angular_velocity.length() < STILL[1];
-    (still || before == lowest).then_some(lowest)
 }
 
 /// Steers one character: turns what it senses and what the game asks into joint targets.
@@ -363,7 +333,7 @@ impl Controller {
         let manual = command.blend.filter(|b| is_valid(b, self.pack.policies().len()));
         let report = &mut self.state.report;
         report.blend = match (report.skill, manual) {
-            (Some(progress), _) => way_out(&self.pack, progress, state, report.blend)
+            (Some(progress), _) => skills::way_out(&self.pack, progress, state, report.blend)
                 .unwrap_or_else(|| Blend::single(self.pack.skills()[progress.skill.index()].policy)),
             (None, Some(blend)) => blend,
             (None, None) => self.state.fall.acting_position(report.position).blend(),
@@ -373,9 +343,11 @@ impl Controller {
         }
     }
 
-    /// The target that the policy is to see. Without one there is no course to hold, and a skill's own target stays as it is.
+    /// The target that the policy is to see. Without one there is no course to hold, and the target of a skill, or of a character
+    /// that strafes, stays as it is.
     fn steered(&mut self, state: &CharacterState, target: Option<Vec2>, dt: f32) -> Option<Vec2> {
-        let steering = self.config.steering.filter(|_| self.state.report.skill.is_none());
+        let steers = self.state.report.skill.is_none() && self.strafing_share() == 0.0;
+        let steering = self.config.steering.filter(|_| steers);
         let (Some(steering), Some(target)) = (steering, target) else {
             self.state.steering = SteeringState::default();
             return target;
@@ -383,11 +355,17 @@ impl Controller {
         Some(steering.adjusted(&mut self.state.steering, state, target, dt))
     }
 
+    fn strafing_share(&self) -> f32 {
+        strafing_share(self.pack.graph(), &self.state.report.blend)
+    }
+
     fn observe(&mut self, state: &CharacterState, command: &Command, dt: f32) {
         let target_world = self.steered(state, self.target(state, command), dt);
+        let facing = (command.facing, self.strafing_share());
         let skeleton = self.pack.skeleton();
         let (observation, target) = self.input.split_at_mut(skeleton.observation_len());
         observe_into(skeleton, state, observation);
+        face_in_observation(skeleton, state, facing, observation);
         self.pack.tensors().observation_normaliser.normalise_in_place(observation);
         self.state.report.target = target_world.map_or([0.0; 2], |target| target_input(state, target));
         target.copy_from_slice(&self.state.report.target);

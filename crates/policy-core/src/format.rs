@@ -172,6 +172,9 @@ pub struct PolicyEntry {
     /// See [`Node::speed_mps`](crate::training::Node::speed_mps).
     #[serde(default)]
     pub speed_mps: Option<f32>,
+    /// See [`Node::strafes`](crate::training::Node::strafes).
+    #[serde(default, skip_serializing_if = "is_false")]
+    pub strafes: bool,
     /// Where the policy comes from: recipe, samples, seed.
     #[serde(default)]
     pub origin: String,

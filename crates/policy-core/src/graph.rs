@@ -23,6 +23,8 @@ pub struct Node {
     pub fall_height: Option<f32>,
     /// Speed at which a character goes straight ahead here, metres per second, where it has one.
     pub speed_mps: Option<f32>,
+    /// True for a policy that faces [`Command::facing`](crate::Command::facing) and moves in any direction.
+    pub strafes: bool,
 }
 
 /// A straight line between the parameters of two policies that is itself a good policy.

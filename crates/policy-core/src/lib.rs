@@ -96,6 +96,7 @@ mod skill;
 mod state;
 mod state_bytes;
 mod steering;
+mod strafe;
 pub mod training;
 mod turn_assist;
 

@@ -22,6 +22,8 @@ struct BoundPath {
     control: Control,
     first: f32,
     needs_stick: bool,
+    /// True when the policy at its end strafes: then the character faces where the camera looks.
+    strafes: bool,
 }
 
 /// Maps gamepads to commands. Remembers which buttons were held: one mapper for each player.
@@ -44,10 +46,14 @@ impl CommandMapper {
             let id = pack.graph().path_named(name)?;
             Some((id, pack.graph().path(id).end()))
         };
+        let strafes = |path: PathId| {
+            pack.graph().path(path).nodes().last().is_some_and(|node| pack.graph().node(*node).strafes)
+        };
         let bound = bindings.paths.iter().filter_map(|binding| {
             let (path, end) = path(&binding.path)?;
             let first = binding.first.clamp(0.0, end);
-            Some(BoundPath { path, end, control: binding.control, first, needs_stick: binding.needs_stick })
+            let (control, needs_stick) = (binding.control, binding.needs_stick);
+            Some(BoundPath { path, end, control, first, needs_stick, strafes: strafes(path) })
         });
         let skill =
             |(button, name): &(Button, alloc::string::String)| Some((*button, pack.skill_named(name)?));
@@ -66,6 +72,7 @@ impl CommandMapper {
     ///
     /// Stick up goes where the camera looks. The target lies ahead by up to 5 m, as far as the stick is
     /// pushed; at rest there is none. The bound path whose control is pressed hardest sets the goal, the earlier one of two.
+    /// While that path leads to a policy that strafes, the character faces where the camera looks.
     /// Otherwise the stick moves along its own path: its deflection in [0, 1], and the faster control adds the
     /// rest of the path. Values that are not finite count as zero. Does not allocate.
     ///
@@ -81,9 +88,11 @@ impl CommandMapper {
         });
         let pressed = pad.buttons.pressed_since(self.last.buttons);
         self.last = *pad;
+        let hardest = self.hardest(pad, push);
         Command {
             target,
-            goal: self.goal(pad, push),
+            facing: hardest.filter(|(_, bound)| bound.strafes).map(|_| camera.direction()),
+            goal: self.goal(pad, push, hardest),
             skill: self.skills.iter().find(|(button, _)| pressed.contains(*button)).map(|(_, skill)| *skill),
             ..Command::default()
         }
@@ -103,11 +112,8 @@ impl CommandMapper {
         }
     }
 
-    fn goal(&self, pad: &GamepadState, push: f32) -> Goal {
-        let along = |path: PathId, first: f32, end: f32, value: f32| Goal::Path {
-            path,
-            coordinate: first + value * (end - first).max(0.0),
-        };
+    /// The bound path whose control is pressed hardest, and how hard.
+    fn hardest(&self, pad: &GamepadState, push: f32) -> Option<(f32, &BoundPath)> {
         let faster = self.value(self.faster, pad);
         let mut hardest: Option<(f32, &BoundPath)> = None;
         for bound in self.paths.iter().filter(|bound| push > 0.0 || !bound.needs_stick) {
@@ -117,6 +123,15 @@ impl CommandMapper {
                 hardest = Some((value, bound));
             }
         }
+        hardest
+    }
+
+    fn goal(&self, pad: &GamepadState, push: f32, hardest: Option<(f32, &BoundPath)>) -> Goal {
+        let along = |path: PathId, first: f32, end: f32, value: f32| Goal::Path {
+            path,
+            coordinate: first + value * (end - first).max(0.0),
+        };
+        let faster = self.value(self.faster, pad);
         match (hardest, self.stick_path) {
             (Some((value, bound)), _) => along(bound.path, bound.first, bound.end, value),
             (None, Some((path, end))) if push > 0.0 => along(path, push, end - 1.0 + push, faster),

@@ -62,6 +62,7 @@ impl CharacterPack {
             name: p.name.clone(),
             fall_height: p.fall_height,
             speed_mps: p.speed_mps,
+            strafes: p.strafes,
         });
         let edges = manifest.edges.iter().map(|e| edge(e, &names)).collect::<Result<Vec<_>, _>>()?;
         let paths = manifest.paths.iter().map(|path| {

@@ -17,3 +17,4 @@ pub use crate::route::RouteTable;
 pub use crate::skeleton::{MAX_SKELETON_PARTS, Roles, SkeletonBody, SkeletonError, SkeletonJoint};
 pub use crate::skill::{EndCondition, SkillProgress};
 pub use crate::steering::SteeringState;
+pub use crate::strafe::{face_in_observation, strafing_share};

@@ -12,7 +12,7 @@ const LEAST_COORDINATE: f32 = 0.2;
 
 /// While the target lies far off the heading, a path's coordinate moves towards the first gait of the path that moves.
 /// Faster gaits slow down to it; a gait between standing and it speeds up, and an upright gait of another style gives way to
-/// it. Low gaits beyond it, such as a crouch, stay.
+/// it. Low gaits beyond it, such as a crouch, stay, and so does one that strafes.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TurnAssist {
     /// Angle from which it slows a faster gait down, radians.
@@ -48,7 +48,7 @@ impl TurnAssist {
         let beyond = (libm::ceilf(coordinate) as usize).min(nodes.len() - 1);
         let fall_height = |i: usize| graph.node(nodes[i]).fall_height.unwrap_or(0.0);
         let low = fall_height(beyond) < fall_height(turning);
-        if beyond > turning && low && speed(beyond) < speed(turning) {
+        if beyond > turning && (graph.node(nodes[beyond]).strafes || low && speed(beyond) < speed(turning)) {
             return *command;
         }
         let slower = coordinate < turning as f32;

@@ -337,6 +337,7 @@ proptest! {
             };
             let command = Command {
                 target: Some(Vec2::new(number, numbers[index % 32])),
+                facing: (mode % 2 == 1).then(|| Vec2::new(numbers[(index + 1) % 32], number)),
                 goal,
                 skill: Some(SkillId::new(index % 4)),
                 blend: (kind == 3).then(|| Blend::between(p(index % 9), p(1), number)),

@@ -34,7 +34,15 @@ fn tick_of(tick: usize) -> (CharacterState, Command) {
     let skill = (tick % 170 == 90).then(|| policy_core::SkillId::new(0));
     let coordinate = if tick % 100 < 50 { 1.3 } else { (tick % 31) as f32 * 0.1 };
     let goal = Goal::Path { path: PathId::new(tick / 250 % 2), coordinate };
-    (state, Command { target: Some(Vec2::new(phase.sin(), phase.cos()) * 5.0), goal, skill, blend: None })
+    (
+        state,
+        Command {
+            target: Some(Vec2::new(phase.sin(), phase.cos()) * 5.0),
+            goal,
+            skill,
+            ..Command::default()
+        },
+    )
 }
 
 fn bits(controller: &Controller) -> Vec<u32> {

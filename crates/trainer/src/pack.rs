@@ -179,6 +179,7 @@ fn policies(plan: &PackPlan, trained: &[TrainedSkill]) -> Result<(Vec<Mlp>, Vec<
             layers: skill.actor.sizes().to_vec(),
             fall_height: planned.fall_height,
             speed_mps: planned.speed_mps,
+            strafes: planned.strafes,
             origin: skill.origin.clone(),
         });
     }

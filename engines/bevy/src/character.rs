@@ -69,6 +69,9 @@ pub enum CharacterGoal {
 pub struct CharacterCommand {
     /// Point to go to, metres, Bevy's world; its height does not matter. `None`: where it stands.
     pub target: Option<Vec3>,
+    /// Direction to face, Bevy's world, of any length; its height does not matter. `None`: where it goes. Only a policy that strafes
+    /// faces one way and moves another.
+    pub facing: Option<Vec3>,
     /// Where on the graph to go.
     pub goal: CharacterGoal,
     /// Name of a skill to start once. It becomes `None` when the controller has taken it.

@@ -254,7 +254,8 @@ fn resolve(
         skill
     });
     let target = command.target.filter(|target| target.is_finite()).map(axes::ground_from_bevy);
-    Command { target, goal, skill, blend: command.blend }
+    let facing = command.facing.filter(|facing| facing.is_finite()).map(axes::ground_from_bevy);
+    Command { target, facing, goal, skill, blend: command.blend }
 }
 
 fn log_errors(mut errors: MessageReader<CharacterError>) {

@@ -75,6 +75,7 @@ fn command(
         let wanted = mapper.0.map(&pad, ahead, &controller.sensed);
         let ground = controller.sensed.ground_height;
         command.target = wanted.target.map(|target| axes::to_bevy(target.extend(ground)));
+        command.facing = wanted.facing.map(|facing| axes::to_bevy(facing.extend(0.0)));
         command.goal = CharacterGoal::Ids(wanted.goal);
         if let Some(skill) = wanted.skill {
             command.skill = Some(controller.controller.pack().skills()[skill.index()].name.clone().into());
@@ -117,12 +118,13 @@ fn add_gamepad(pad: &mut GamepadState, gamepad: &Gamepad) {
 }
 
 /// Keys that stand for buttons.
-const KEYS: [(KeyCode, Button); 5] = [
+const KEYS: [(KeyCode, Button); 6] = [
     (KeyCode::Space, Button::South),
     (KeyCode::KeyE, Button::East),
     (KeyCode::KeyG, Button::West),
     (KeyCode::KeyF, Button::North),
     (KeyCode::KeyQ, Button::RightShoulder),
+    (KeyCode::KeyR, Button::RightStick),
 ];
 
 fn add_keys(pad: &mut GamepadState, keys: &ButtonInput<KeyCode>) {

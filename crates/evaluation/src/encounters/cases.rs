@@ -9,7 +9,7 @@ use random::Rng;
 
 use super::cast::{Cast, Mark};
 use super::{EncounterReport, Fate};
-use crate::trial::{Gait, TICK_SECS};
+use crate::trial::{Gait, TICK_SECS, ticks};
 use crate::{Effort, Rig};
 
 /// Seconds before a ball is thrown, least and most: any phase of a step.
@@ -97,7 +97,7 @@ fn head_on(rig: &Rig<'_>, gait: &Gait, seed: u64) -> Fates {
     let marks = [mark(-0.5 * apart, 0.0, 0.0), mark(0.5 * apart, aside, PI)];
     let (mut cast, ()) = Cast::new(rig, gait, &marks, |_| Ok(()))?;
     let mut met = 0.0;
-    for _ in 0..(9.0 / TICK_SECS) as u32 {
+    for _ in 0..ticks(9.0) {
         cast.tick()?;
         let near = cast.players[0].position().distance(cast.players[1].position()) < 0.7;
         met += if near || met > 0.0 { TICK_SECS } else { 0.0 };
@@ -110,7 +110,7 @@ fn head_on(rig: &Rig<'_>, gait: &Gait, seed: u64) -> Fates {
     cast.fates(|_| None)
 }
 
-/// Two groups of fifteen, three abreast and 1.6 m apart, cross each other's way at a right angle. Nobody looks out.
+/// Two groups of fifteen, three abreast and 1.6 m apart, cross each other's way at a right angle. None avoids another.
 fn crowd(rig: &Rig<'_>, gait: &Gait, seed: u64) -> Fates {
     const ABREAST: usize = 3;
     const APART: f32 = 1.6;
@@ -138,8 +138,7 @@ fn ball(rig: &Rig<'_>, gait: &Gait, [kg, mps]: [f32; 2], seed: u64) -> Fates {
     let radius = 0.12 * (kg / 3.0_f32).cbrt();
     let prop = Prop::new(Solid::Sphere { radius }, kg);
     let aside = Motion::at(Vec3::new(0.0, 200.0, radius));
-    let (mut cast, ball) =
-        Cast::new(rig, gait, &[mark(0.0, 0.0, 0.0)], |edit| edit.add_prop(prop.clone(), aside))?;
+    let (mut cast, ball) = Cast::new(rig, gait, &[mark(0.0, 0.0, 0.0)], |edit| edit.add_prop(prop, aside))?;
     cast.run(rng.range(BEFORE_SECS[0], BEFORE_SECS[1]))?;
     if cast.players[0].has_fallen() {
         return Ok(Vec::new());
@@ -194,7 +193,7 @@ fn door(rig: &Rig<'_>, gait: &Gait, seed: u64) -> Fates {
         )?;
         Ok(())
     })?;
-    for _ in 0..(10.0 / TICK_SECS) as u32 {
+    for _ in 0..ticks(10.0) {
         let player = &mut cast.players[0];
         // To the middle of the opening, then straight on.
         let at = player.position();
@@ -221,7 +220,7 @@ fn stairs(rig: &Rig<'_>, gait: &Gait, rise: f32, seed: u64) -> Fates {
         }
         Ok(())
     })?;
-    for _ in 0..(10.0 / TICK_SECS) as u32 {
+    for _ in 0..ticks(10.0) {
         let player = &mut cast.players[0];
         let at = player.position();
         player.steer((Vec2::new(at.x + 2.0, 0.0) - at).to_angle(), 1.0);

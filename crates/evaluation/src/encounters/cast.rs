@@ -10,7 +10,7 @@ use policy_core::{
 use super::{Fate, RISE_SECS};
 use crate::Rig;
 use crate::eval_character::is_upright;
-use crate::trial::{Gait, TICK_SECS, ticks};
+use crate::trial::{Gait, TICK_SECS, stick_along, ticks};
 
 /// Where a character begins.
 #[derive(Clone, Copy, Debug)]
@@ -36,7 +36,7 @@ pub(super) struct Player {
 impl Player {
     /// Points the stick to a direction, radians from x, as far as `push` in [0, 1].
     pub fn steer(&mut self, angle: f32, push: f32) {
-        self.pad.left_stick = [-push * angle.sin(), push * angle.cos()];
+        self.pad.left_stick = stick_along(angle, push);
     }
 
     /// Horizontal place of the pelvis, metres.

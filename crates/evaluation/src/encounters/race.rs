@@ -10,7 +10,7 @@ use random::Rng;
 use serde::{Deserialize, Serialize};
 
 use super::cast::{Cast, Mark, Player};
-use crate::trial::{Gait, TICK_SECS};
+use crate::trial::{Gait, TICK_SECS, ticks};
 use crate::{EvaluationError, Rig};
 
 /// A run that takes longer is given up, seconds.
@@ -131,7 +131,7 @@ fn run(rig: &Rig<'_>, walk: &Gait, scene: &Arc<Playground>, seed: u64) -> Result
         .map(|(index, start)| Wanderer::new(start.zone, start.heading, seed, index))
         .collect();
     let (mut race, mut falls, mut next, mut waits) = (Race::default(), Vec::new(), 0, true);
-    for _ in 0..(LIMIT_SECS / TICK_SECS) as u32 {
+    for _ in 0..ticks(LIMIT_SECS) {
         let at = cast.players[0].position();
         let swings = pendulum.map(|pendulum| cast.world.motion(pendulum)).transpose()?;
         let Some((to, near, pace)) = way.get(next) else { break };

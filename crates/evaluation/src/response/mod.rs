@@ -2,10 +2,12 @@
 
 mod start;
 mod stop;
+mod strafe;
 mod straight;
 mod turn;
 
 pub use start::{StartReport, measure_starts};
 pub use stop::{StopReport, measure_stops};
+pub use strafe::{StrafeReport, measure_strafe};
 pub use straight::{StraightPoint, commanded_mps, measure_straight};
 pub use turn::{TURNS_DEGREES, TurnDetector, TurnReport, measure_turns};

@@ -45,6 +45,9 @@ pub struct TurnReport {
     pub right_median_s: Option<f32>,
     /// Median of the metres that the character is carried on in the old direction.
     pub metres: Option<f32>,
+    /// Median of the seconds until the pelvis faces the direction as closely as the velocity does; `None` when half never do. A
+    /// character that creeps aside or backwards moves the right way and has not turned.
+    pub facing_median_s: Option<f32>,
     /// Turns in which the character falls.
     pub falls: usize,
 }
@@ -79,6 +82,7 @@ impl TurnDetector {
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 struct Turn {
     secs: Option<f32>,
+    facing_secs: Option<f32>,
     metres: f32,
     fell: bool,
 }
@@ -108,6 +112,7 @@ pub fn measure_turns(rig: &Rig<'_>, settled: &[Settled]) -> BTreeMap<String, Tur
             left_median_s: median(of(Some(1.0)).map(|t| t.secs)),
             right_median_s: median(of(Some(-1.0)).map(|t| t.secs)),
             metres: median(of(None).map(|t| Some(t.metres))),
+            facing_median_s: median(of(None).map(|t| t.facing_secs)),
             falls: of(None).filter(|t| t.fell).count(),
         }
     };
@@ -116,7 +121,8 @@ pub fn measure_turns(rig: &Rig<'_>, settled: &[Settled]) -> BTreeMap<String, Tur
 
 fn turn(rig: &Rig<'_>, from: &Settled, angle: f32) -> Turn {
     let mut trial = from.resume(rig.model);
-    let (mut detector, start) = (TurnDetector::new(angle), trial.position().x);
+    let [mut velocity, mut heading] = [TurnDetector::new(angle); 2];
+    let start = trial.position().x;
     trial.steer(angle, from.gait.push);
     let mut turn = Turn::default();
     for _ in 0..ticks(LIMIT_SECS + HOLD_SECS) {
@@ -124,9 +130,12 @@ fn turn(rig: &Rig<'_>, from: &Settled, angle: f32) -> Turn {
             turn.fell = true;
             break;
         }
-        turn.metres = turn.metres.max(trial.position().x - start);
-        turn.secs = detector.tick(trial.velocity.value());
-        if turn.secs.is_some() {
+        turn.facing_secs = turn.facing_secs.or_else(|| heading.tick(Vec2::from_angle(trial.heading())));
+        if turn.secs.is_none() {
+            turn.metres = turn.metres.max(trial.position().x - start);
+            turn.secs = velocity.tick(trial.velocity.value());
+        }
+        if turn.secs.is_some() && turn.facing_secs.is_some() {
             break;
         }
     }

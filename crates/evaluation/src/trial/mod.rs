@@ -35,7 +35,12 @@ pub fn ticks(secs: f32) -> u32 {
     (secs / TICK_SECS).round() as u32
 }
 
-/// A character, its controller and the pad that steers it. The camera looks along world x.
+/// A stick that points to a direction, radians from x, counter-clockwise, as far as `push` in [0, 1]; the camera looks along x.
+pub(crate) fn stick_along(angle: f32, push: f32) -> [f32; 2] {
+    [-push * angle.sin(), push * angle.cos()]
+}
+
+/// A character, its controller and the pad that steers it.
 #[derive(Debug)]
 pub struct Trial {
     /// The body.
@@ -46,6 +51,8 @@ pub struct Trial {
     pub state: CharacterState,
     /// The pad, as it is held now.
     pub pad: GamepadState,
+    /// Where the player's camera looks; along world x at first.
+    pub camera: Heading,
     /// Horizontal velocity of the pelvis, low-passed, metres per second.
     pub velocity: LowPass,
     /// What comes between the controller and the motors.
@@ -65,6 +72,7 @@ impl Trial {
             controller: Controller::with_config(pack.clone(), config),
             state: CharacterState::new(pack.skeleton()),
             pad: gait.pad,
+            camera: Heading::FORWARD,
             velocity: LowPass::default(),
             disturbance: Disturbance::default(),
             asked_skill: None,
@@ -93,7 +101,7 @@ impl Trial {
 
     /// Points the stick to a direction, radians from x, counter-clockwise, as far as `push` in [0, 1].
     pub fn steer(&mut self, angle: f32, push: f32) {
-        self.pad.left_stick = [-push * angle.sin(), push * angle.cos()];
+        self.pad.left_stick = stick_along(angle, push);
     }
 
     /// One control tick. False when the physics diverged.
@@ -103,7 +111,7 @@ impl Trial {
 
     /// One control tick with a command that `change` has altered. False when the physics diverged.
     pub fn tick_with(&mut self, change: impl FnOnce(&mut Command)) -> bool {
-        let mut command = self.mapper.map(&self.pad, Heading::FORWARD, &self.state);
+        let mut command = self.mapper.map(&self.pad, self.camera, &self.state);
         change(&mut command);
         self.asked_skill = command.skill;
         self.targets.copy_from_slice(self.controller.tick(&self.state, &command, TICK_SECS));

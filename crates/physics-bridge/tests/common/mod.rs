@@ -105,6 +105,7 @@ fn policy_entry(name: &str, sizes: &[usize]) -> PolicyEntry {
         layers: sizes.into(),
         fall_height: None,
         speed_mps: None,
+        strafes: false,
         origin: "made up".into(),
     }
 }

@@ -5,18 +5,51 @@ use alloc::sync::Arc;
 use glam::Vec2;
 
 use super::Controller;
+use crate::blend::Blend;
 use crate::command::Command;
 use crate::controller_state::ControllerState;
 use crate::fall::{Heights, fall_height, lies};
 use crate::heading::Heading;
-use crate::ids::SkillId;
+use crate::ids::{NodeId, SkillId};
 use crate::observation::TARGET_RANGE_METRES;
+use crate::pack::CharacterPack;
 use crate::path::GraphPosition;
 use crate::skill::{Refusal, SkillEnd, SkillProgress};
 use crate::state::CharacterState;
 
 /// Longest time that a requested skill stays pending, seconds.
 const LONGEST_PENDING_SECS: f32 = 4.0;
+
+/// A recovery that takes so long and is still may be stuck, seconds: a policy without noise that rests against something stays
+/// there for good.
+const STUCK_SECONDS: f32 = 2.5;
+
+/// A root slower than this is still, metres and radians per second.
+const STILL: [f32; 2] = [0.05, 0.2];
+
+/// From then on another policy may act so long, once in this time, seconds.
+const WAY_OUT_SECONDS: [f32; 2] = [1.0, 1.5];
+
+/// The lowest gait of the paths, to move a character on whose recovery is stuck; `None` while it is not. Once it acts it goes on
+/// for the rest of its time: `before` is the blend of the last tick.
+pub(super) fn way_out(
+    pack: &CharacterPack,
+    progress: SkillProgress,
+    state: &CharacterState,
+    before: Blend,
+) -> Option<Blend> {
+    let late = progress.seconds - STUCK_SECONDS;
+    let [acts, every] = WAY_OUT_SECONDS;
+    if pack.recovery() != Some(progress.skill) || late < 0.0 || libm::fmodf(late, every) >= acts {
+        return None;
+    }
+    let height = |node: &NodeId| pack.graph().node(*node).fall_height.unwrap_or(0.0);
+    let nodes = pack.graph().paths().iter().flat_map(|path| path.nodes().iter().copied());
+    let lowest = GraphPosition::node(nodes.min_by(|a, b| height(a).total_cmp(&height(b)))?).blend();
+    let root = state.root();
+    let still = root.linear_velocity.length() < STILL[0] && root.angular_velocity.length() < STILL[1];
+    (still || before == lowest).then_some(lowest)
+}
 
 impl Controller {
     /// Runs the skill that is on for a tick, and ends it when it has come to its end.

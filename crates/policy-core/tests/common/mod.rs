@@ -66,6 +66,7 @@ pub fn manifest() -> Manifest {
         layers: POLICY_SIZES.into(),
         fall_height: (!["crawl", "roll"].contains(&name)).then_some(0.5),
         speed_mps: None,
+        strafes: false,
         origin: "made up".into(),
     };
     let edge = |a: &str, b: &str| EdgeEntry {

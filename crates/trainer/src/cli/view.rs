@@ -12,12 +12,22 @@ use physics_bridge::Model;
 use serde::Serialize;
 
 use super::output::say;
+use trainer::recipe::ClipShare;
 
 /// Arguments of the verb.
 #[derive(Args)]
 pub(crate) struct Arguments {
     /// Name of a clip in the folder of clips, or a clip file.
     clip: String,
+    /// Play it backwards.
+    #[arg(long)]
+    reversed: bool,
+    /// Play it faster or slower by this factor.
+    #[arg(long, default_value_t = 1.0, value_name = "FACTOR")]
+    pace: f32,
+    /// Make steps to the left at this speed, metres per second, of its first pose.
+    #[arg(long, value_name = "MPS")]
+    side_steps: Option<f32>,
     /// File to write the poses to: JSON, one list of `qpos` a control tick.
     #[arg(long)]
     poses: Option<PathBuf>,
@@ -42,6 +52,13 @@ struct Poses<'a> {
 pub(crate) fn run(model: &Model, folder: impl Fn() -> Result<ClipFolder>, a: &Arguments) -> Result<()> {
     let file = PathBuf::from(&a.clip);
     let clip = if file.is_file() { load_file(&file)? } else { folder()?.load(&a.clip)? };
+    let made = ClipShare {
+        reversed: a.reversed,
+        pace: a.pace,
+        side_steps_mps: a.side_steps,
+        ..ClipShare::whole(&clip.name)
+    };
+    let clip = made.made_of(clip)?;
     let fitted = fit(&clip, model)?;
     let (radians, joint) = &fitted.motion.outside_limits;
     let lowest = fitted.clearances.iter().copied().fold(f32::INFINITY, f32::min);

@@ -9,9 +9,11 @@ use random::Rng;
 use super::graph::TrainingGraph;
 
 mod config;
+mod facing;
 mod stick;
 
-pub use config::CommandConfig;
+pub use config::{CommandConfig, StrafeConfig};
+use facing::Facing;
 
 /// Seconds of a control tick.
 pub const DT_SECS: f32 = 1.0 / CONTROL_HZ as f32;
@@ -54,13 +56,16 @@ pub struct Command {
     /// Holds it back in a low gait until the character stands.
     fall: FallDetector,
     target_ticks: u32,
-    /// Direction of a stick held by a player, radians; `None` for targets fixed in the world.
+    /// Direction of a stick held by a player, radians, from the way to face where there is one; `None` for targets fixed in the
+    /// world.
     stick: Option<f32>,
     /// True for a stick that goes through turn assist and steering, as in a game.
     assisted: bool,
     /// True for a stick whose release leads back to standing along the path.
     leads_to_standing: bool,
     steering: SteeringState,
+    /// Where it is to face, beside where it goes; `None` for a target that it faces.
+    facing: Option<Facing>,
 }
 
 impl Default for Command {
@@ -136,6 +141,7 @@ impl Command {
             assisted: false,
             leads_to_standing: false,
             steering: SteeringState::default(),
+            facing: None,
         }
     }
 
@@ -153,8 +159,10 @@ impl Command {
         (position, heading): (Vec2, f32),
         rng: &mut Rng,
     ) {
-        self.stick = rng.chance(config.stick_share).then_some(heading);
+        self.stick =
+            rng.chance(config.stick_share).then_some(if config.strafe.is_some() { 0.0 } else { heading });
         self.assisted = self.stick.is_some() && rng.chance(config.assisted_share);
+        self.facing = config.strafe.map(|_| Facing::along(heading));
         self.renew_target(config, graph, (position, Some(heading)), rng);
         self.follow_stick(graph, position);
         self.seen_target = self.target;
@@ -209,6 +217,9 @@ impl Command {
                 }
             }
         }
+        if let (Some(facing), Some(strafe)) = (&mut self.facing, &config.strafe) {
+            facing.advance(strafe, rng);
+        }
         self.follow_stick(graph, root);
         let (rules, mut next) = (graph.policy_graph(), self.position);
         rules.travel(&mut next, graph.position(self.path, self.assist(graph, state)), DT_SECS);
@@ -238,7 +249,12 @@ impl Command {
         if let Some(direction) = &mut self.stick {
             // A player mostly turns by up to a quarter, and in a hurry by any angle.
             let anywhere = rng.chance(config.any_direction_share);
-            *direction = if anywhere { rng.angle() } else { *direction + rng.range(-1.0, 1.0) * QUARTER };
+            *direction = match self.facing {
+                // Keys and thumbs mostly go ahead, aside or back.
+                Some(_) if !anywhere => QUARTER * rng.index(4) as f32,
+                _ if anywhere => rng.angle(),
+                _ => *direction + rng.range(-1.0, 1.0) * QUARTER,
+            };
             return;
         }
         // Half of the first targets lie ahead, so that moving starts are not always asked to turn.

@@ -32,7 +32,7 @@ pub struct EnvContext<'a> {
     pub demonstrations: &'a [&'a Demonstrations],
     /// Other clips, for starts.
     pub start_demonstrations: Option<&'a Demonstrations>,
-    /// What raises dropped characters, for starts.
+    /// Episodic skills whose ends are starts, in the order of the recipe.
     pub hand_over: &'a [HandOver],
     /// Means and deviations of the whole graph.
     pub normalisers: &'a Normalisers,
@@ -191,8 +191,9 @@ impl Env {
         let (config, graph, position) = (&context.config.reward, context.graph, self.command.position);
         let prompt_mps = if config.prompt_start { self.command.prompt_mps(graph) } else { 0.0 };
         let pace = Pace {
-            speed_mps: graph.speed_mps(position).max(prompt_mps),
+            speed_mps: self.command.speed_mps(graph, self.root_position()).max(prompt_mps),
             speed_scale_mps: graph.speed_scale_mps(position),
+            facing: self.command.facing().map(|facing| (facing, graph.strafe(position).0)),
         };
         let height = (config.height_share, graph.root_metres(position));
         let terms = match config.task {
@@ -232,5 +233,6 @@ impl Env {
     pub(super) fn has_failed(&self, context: &EnvContext<'_>) -> bool {
         let rule = context.graph.termination(self.command.position);
         rule.is_broken_by(context.heights, &self.state, self.stood_ticks >= STOOD_TICKS)
+            || self.command.faces_elsewhere(context.graph, self.heading())
     }
 }

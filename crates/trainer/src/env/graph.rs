@@ -4,7 +4,7 @@ use policy_core::training::{GraphError, Path};
 use policy_core::{GraphPosition, NodeId, PathId, PolicyGraph};
 use random::Rng;
 
-use super::command::INTENT_LEN;
+use super::command::{INTENT_LEN, StrafeConfig};
 use super::termination::TerminationRule;
 
 mod node;
@@ -158,6 +158,13 @@ impl TrainingGraph {
     #[must_use]
     pub fn speed_mps(&self, position: GraphPosition) -> f32 {
         self.between(position, |node| node.speed_mps)
+    }
+
+    /// By how much a character strafes at a position, in [0, 1], and how.
+    #[must_use]
+    pub fn strafe(&self, position: GraphPosition) -> (f32, Option<StrafeConfig>) {
+        let how = [position.from, position.to].iter().find_map(|node| self.nodes[node.index()].strafe);
+        (self.between(position, |node| f32::from(u8::from(node.strafe.is_some()))), how)
     }
 
     /// Least scale of the reward for the speed, metres per second.

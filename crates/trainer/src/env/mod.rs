@@ -22,7 +22,7 @@ mod track_clip;
 mod tracking;
 mod vec_env;
 
-pub use command::{Command, CommandConfig, DT_SECS};
+pub use command::{Command, CommandConfig, DT_SECS, StrafeConfig};
 pub use config::EnvironmentConfig;
 pub use demonstrations::{ClipPhase, Demonstrations, ReferenceState};
 pub use env::{Env, EnvContext, Episode};

@@ -1,6 +1,7 @@
 //! What policies and critic see. The policy's input is policy-core's; the critic also sees the position on the graph, where it
 //! is going and whether a clip is tracked.
 
+use policy_core::training::face_in_observation;
 use policy_core::{observe_into, target_input};
 
 use super::command::INTENT_LEN;
@@ -24,6 +25,8 @@ impl Env {
         let (input, rest) = out.split_at_mut(context.skeleton.policy_input_len());
         let (observation, target) = input.split_at_mut(context.skeleton.observation_len());
         observe_into(context.skeleton, &self.state, observation);
+        let facing = (self.command.facing(), context.graph.strafe(self.command.position).0);
+        face_in_observation(context.skeleton, &self.state, facing, observation);
         context.normalisers.observation.normalise_in_place(observation);
         target.copy_from_slice(&target_input(&self.state, self.command.seen_target));
         let (position, intent) = rest.split_at_mut(context.graph.position_len());

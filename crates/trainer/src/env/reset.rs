@@ -103,6 +103,8 @@ impl Env {
         }
         let at = (self.root_position(), self.heading().angle());
         self.command.aim(&config.command, context.graph, at, &mut self.rng);
+        let moves = self.state.root().linear_velocity.truncate();
+        self.command.go_on(context.graph, at.0, moves);
         // Of skills trained together only trackers track clips.
         let others = config.reward.tracking_share > 0.0 && !self.tracker;
         if limp || standing || config.reward.tracking_weight == 0.0 || others {

@@ -136,6 +136,8 @@ pub struct Pace {
     pub speed_mps: f32,
     /// See [`RewardConfig::speed_scale_mps`].
     pub speed_scale_mps: f32,
+    /// Direction to face, world, and how much of the facing reward is for it; the rest is for facing the target.
+    pub facing: Option<(Vec2, f32)>,
 }
 
 /// Angle to the target at which the strict reward for facing it has fallen to 1/e, radians.
@@ -172,17 +174,23 @@ pub fn target_reward(
     let scale = (0.6 * relative.min(relative.sqrt())).max(pace.speed_scale_mps);
     let squares = (along - commanded_mps).powi(2) + config.sideways_weight * sideways * sideways;
     let error = squares / (scale * scale);
+    let loss = |aside: f32| {
+        let evenly = aside.abs() / std::f32::consts::PI;
+        let steeply = 1.0 - (-(aside / STRICT_FACING_RADIANS).powi(2)).exp();
+        evenly + config.strict_facing_share * (steeply - evenly)
+    };
     // Close by, the direction of the target says nothing.
-    let aside = facing_now.angle_to(direction);
-    let evenly = aside.abs() / std::f32::consts::PI;
-    let steeply = 1.0 - (-(aside / STRICT_FACING_RADIANS).powi(2)).exp();
-    let facing = 1.0 - near * (evenly + config.strict_facing_share * (steeply - evenly));
+    let (own, share) = pace.facing.unwrap_or((direction, 0.0));
+    let [to_target, to_own] = [direction, own].map(|wanted| facing_now.angle_to(wanted));
+    let facing = 1.0 - (1.0 - share) * near * loss(to_target) - share * loss(to_own);
     let bells = 0.4 * (-2.0 * error).exp() + 0.3 * (-2.0 * error / 9.0).exp();
     let off = (velocity - commanded_mps * direction).length() / (2.0 * pace.speed_mps.max(1.0));
     let linear = 0.7 * (1.0 - off).max(0.0);
-    let speed = bells + config.linear_speed_share * (linear - bells);
+    // Turning to the target and going there must not be worth much to a character that is to face elsewhere.
+    let speed = (bells + config.linear_speed_share * (linear - bells)) * (1.0 - share * loss(to_own));
     let [begins, fully] = TURNING_RADIANS;
-    let turning = near * ((aside.abs() - begins) / (fully - begins)).clamp(0.0, 1.0);
+    let turns = |aside: f32| ((aside.abs() - begins) / (fully - begins)).clamp(0.0, 1.0);
+    let turning = (1.0 - share) * near * turns(to_target) + share * turns(to_own);
     RewardTerms {
         task: speed + 0.3 * facing,
         speed_mps: along,

@@ -8,7 +8,7 @@ fn with(
     [speed_mps, speed_scale_mps]: [f32; 2],
 ) -> RewardTerms {
     let state = CharacterState::new(&Skeleton::humanoid());
-    target_reward(config, &state, velocity, target, Pace { speed_mps, speed_scale_mps })
+    target_reward(config, &state, velocity, target, Pace { speed_mps, speed_scale_mps, facing: None })
 }
 
 /// The same with the default ones.
@@ -138,4 +138,20 @@ fn the_linear_share_has_a_slope_right_after_a_flip() {
     assert!(gain(0.0) < 0.01 && gain(0.5) > 0.03, "{} {}", gain(0.0), gain(0.5));
     let exact = RewardConfig { linear_speed_share: 0.5, ..RewardConfig::default() };
     assert!((with(&exact, Vec2::new(1.25, 0.0), AHEAD, [1.25, 0.6]).task - 1.0).abs() < 1e-6);
+}
+
+#[test]
+fn what_strafes_is_paid_for_facing_its_own_way_and_little_for_speed_without_it() {
+    let state = CharacterState::new(&Skeleton::humanoid());
+    let task = |facing: Vec2, velocity: Vec2, target: Vec2| {
+        let pace = Pace { speed_mps: 1.0, speed_scale_mps: 0.6, facing: Some((facing, 1.0)) };
+        target_reward(&RewardConfig::default(), &state, velocity, target, pace).task
+    };
+    // It faces along x.
+    let aside = task(Vec2::X, Vec2::Y, Vec2::Y * 5.0);
+    assert!((aside - 1.0).abs() < 1e-6, "aside, facing ahead: {aside}");
+    let turned_away = task(-Vec2::X, Vec2::X, Vec2::X * 5.0);
+    assert!(turned_away < 0.01, "ahead, and to face back: {turned_away}");
+    let stands = task(Vec2::X, Vec2::ZERO, Vec2::ZERO);
+    assert!((stands - 1.0).abs() < 1e-6, "standing: {stands}");
 }

@@ -129,6 +129,9 @@ pub struct PolicyFile {
     pub fall_height: Option<f32>,
     /// Speed that it was trained for, metres per second.
     pub speed_mps: Option<f32>,
+    /// True when it faces one way and moves another: the root's x axis in its observation lies in the frame of the way to face.
+    #[serde(default)]
+    pub strafes: bool,
 }
 
 /// The model of a path.
@@ -159,6 +162,7 @@ impl Deployment {
             file: file_name("policy", index, &node.name),
             fall_height: node.fall_height,
             speed_mps: node.speed_mps,
+            strafes: node.strafes,
         });
         let paths = graph.paths().iter().enumerate().map(|(index, path)| PathFile {
             name: path.name().to_owned(),

@@ -55,6 +55,9 @@ pub struct PlannedPolicy {
     /// Speed at which it goes straight ahead, metres per second.
     #[serde(default)]
     pub speed_mps: Option<f32>,
+    /// True for a policy that faces one way and moves another.
+    #[serde(default)]
+    pub strafes: bool,
 }
 
 impl PackPlan {

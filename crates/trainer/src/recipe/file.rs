@@ -32,26 +32,62 @@ pub struct ClipShare {
     /// First and last second of the clip that count; the whole clip when there are none.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub seconds: Option<[f32; 2]>,
+    /// True to play it backwards: walking ahead becomes walking back.
+    #[serde(default, skip_serializing_if = "is_false")]
+    pub reversed: bool,
+    /// How fast it is played.
+    #[serde(default = "one")]
+    pub pace: f32,
+    /// Speed of steps to the left that are made of its first pose, metres per second; none for the clip itself.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub side_steps_mps: Option<f32>,
 }
 
 impl ClipShare {
     /// The whole clip of this name and its mirror image.
     #[must_use]
     pub fn whole(name: &str) -> Self {
-        Self { name: name.to_owned(), share: 1.0, mirror: true, seconds: None }
+        let (seconds, side_steps_mps) = (None, None);
+        Self {
+            name: name.to_owned(),
+            share: 1.0,
+            mirror: true,
+            seconds,
+            reversed: false,
+            pace: 1.0,
+            side_steps_mps,
+        }
     }
 
-    /// The clip from its folder, cut to the seconds that count.
+    /// The clip from its folder, cut to the seconds that count, and what is made of it.
     ///
     /// # Errors
     /// When the clip is missing or wrong, or shorter than those seconds.
     pub fn load(&self, folder: &ClipFolder) -> Result<Clip, ClipError> {
-        let clip = folder.load(&self.name)?;
-        match self.seconds {
-            Some(seconds) => clip.excerpt(seconds),
-            None => Ok(clip),
-        }
+        self.made_of(folder.load(&self.name)?)
     }
+
+    /// What counts of a clip, and what is made of it.
+    ///
+    /// # Errors
+    /// When the clip is shorter than the seconds that count, or lacks the legs that side steps need.
+    pub fn made_of(&self, mut clip: Clip) -> Result<Clip, ClipError> {
+        if let Some(seconds) = self.seconds {
+            clip = clip.excerpt(seconds)?;
+        }
+        if let Some(mps) = self.side_steps_mps {
+            clip = clip.side_steps(mps)?;
+        }
+        if self.reversed {
+            clip = clip.reversed();
+        }
+        Ok(if self.pace == 1.0 { clip } else { clip.at_pace(self.pace) })
+    }
+}
+
+#[expect(clippy::trivially_copy_pass_by_ref, reason = "as serde calls it")]
+fn is_false(value: &bool) -> bool {
+    !value
 }
 
 fn yes() -> bool {

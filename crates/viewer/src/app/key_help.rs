@@ -11,6 +11,10 @@ pub fn key_help(map: &KeyMap) -> Vec<(String, &'static str)> {
         (key(KeyAction::Faster), "hold: faster, from a walk to a run; it returns slowly"),
         (key(KeyAction::Lower), "hold: lower, from a walk to a crawl"),
         (key(KeyAction::Style), "hold: the other style, where the character has one"),
+        (
+            key(KeyAction::Strafe),
+            "hold: face where the camera looks and walk any way, where the character can",
+        ),
         (key(KeyAction::GetUp), "get up"),
         (key(KeyAction::Roll), "roll"),
         (

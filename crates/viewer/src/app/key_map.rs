@@ -19,11 +19,12 @@ pub enum KeyAction {
     Jump,
     Kick,
     Shove,
+    Strafe,
 }
 
 impl KeyAction {
     /// All actions, each with the key that it has at first.
-    pub const ALL: [(KeyAction, Key); 12] = [
+    pub const ALL: [(KeyAction, Key); 13] = [
         (KeyAction::Ahead, Key::W),
         (KeyAction::Back, Key::S),
         (KeyAction::Left, Key::A),
@@ -36,6 +37,7 @@ impl KeyAction {
         (KeyAction::Jump, Key::J),
         (KeyAction::Kick, Key::K),
         (KeyAction::Shove, Key::V),
+        (KeyAction::Strafe, Key::F),
     ];
 
     /// Name for panels.
@@ -54,6 +56,7 @@ impl KeyAction {
             KeyAction::Jump => "jump",
             KeyAction::Kick => "kick",
             KeyAction::Shove => "knock over",
+            KeyAction::Strafe => "strafe",
         }
     }
 }

@@ -86,6 +86,7 @@ impl Keys {
             (KeyAction::Jump, Button::North),
             (KeyAction::Kick, Button::West),
             (KeyAction::Style, Button::RightShoulder),
+            (KeyAction::Strafe, Button::RightStick),
             (KeyAction::Shove, SHOVE_BUTTON),
         ];
         let mut buttons = Buttons::NONE;

@@ -124,6 +124,10 @@ fn caps(app: &App) -> Vec<Cap> {
         let told = "Hold it: the longer, the lower, down to a crawl.";
         caps.push(cap(named("LT", key(KeyAction::Lower)), "lower", told, input.left_trigger > REST));
     }
+    if pack.graph().path_named("strafe").is_some() {
+        let told = "Hold it: faces where the camera looks and walks aside and back.";
+        caps.push(cap(named("R3", key(KeyAction::Strafe)), "strafe", told, pressed(Button::RightStick)));
+    }
     if FirstStep::Roll.is_offered(pack) {
         let told = "Rolls forward, from a walk.";
         caps.push(cap(named("B", key(KeyAction::Roll)), "roll", told, pressed(Button::East)));

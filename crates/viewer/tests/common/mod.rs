@@ -132,6 +132,7 @@ pub fn quadruped() -> CharacterPack {
         layers: layers.clone(),
         fall_height: Some(0.05),
         speed_mps: Some(speed_mps),
+        strafes: false,
         origin: "made up".into(),
     };
     let manifest = Manifest {

@@ -1,5 +1,7 @@
 //! Settings of commands.
 
+use std::f32::consts::PI;
+
 use serde::{Deserialize, Serialize};
 
 /// What characters are told to do.
@@ -40,6 +42,50 @@ pub struct CommandConfig {
     pub edge_secs_factors: [f32; 2],
     /// True to stay at the end of the path: on an edge, at the skill itself.
     pub stay_at_end: bool,
+    /// A skill that faces one way and moves another; none for one that faces its target.
+    pub strafe: Option<StrafeConfig>,
+}
+
+/// How a skill is asked to strafe.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+pub struct StrafeConfig {
+    /// Seconds until the way to face is renewed, least and most.
+    pub facing_secs: [f32; 2],
+    /// Share of ways to face that jump to any direction; the others turn by up to 90 degrees at the pace of a thumb.
+    pub jump_share: f32,
+    /// Speed aside, as a share of the speed ahead.
+    pub aside: f32,
+    /// Speed backwards, as a share of the speed ahead.
+    pub back: f32,
+    /// How fast a thumb turns the camera, radians a second, least and most.
+    pub turn_rate: [f32; 2],
+    /// An episode fails where it faces further from its way than this, radians; with pi never. A policy that turns to its target
+    /// by habit otherwise hardly meets what it is to learn.
+    pub max_facing_error: f32,
+}
+
+impl Default for StrafeConfig {
+    fn default() -> Self {
+        Self {
+            facing_secs: [0.7, 4.0],
+            jump_share: 0.15,
+            aside: 0.6,
+            back: 0.7,
+            turn_rate: [0.5, 3.5],
+            max_facing_error: PI,
+        }
+    }
+}
+
+impl StrafeConfig {
+    /// Share of the speed ahead at an angle between facing and moving, radians: on an ellipse through ahead, aside and back.
+    #[must_use]
+    pub fn speed_share(&self, radians: f32) -> f32 {
+        let (sin, cos) = radians.sin_cos();
+        let along = if cos < 0.0 { self.back } else { 1.0 };
+        ((cos / along).powi(2) + (sin / self.aside).powi(2)).sqrt().recip()
+    }
 }
 
 impl Default for CommandConfig {
@@ -61,6 +107,7 @@ impl Default for CommandConfig {
             edge_secs: 0.0,
             edge_secs_factors: [1.0, 1.0],
             stay_at_end: false,
+            strafe: None,
         }
     }
 }

@@ -12,7 +12,7 @@ impl Command {
     /// A stick's target goes ahead of the character; below the second node of a path that begins with standing it is as
     /// near as the stick is pushed little.
     pub(super) fn follow_stick(&mut self, graph: &TrainingGraph, position: Vec2) {
-        if let Some(direction) = self.stick {
+        if let Some(direction) = self.stick_radians() {
             self.target = position + self.push(graph) * TARGET_RANGE_METRES * Vec2::from_angle(direction);
         }
     }
@@ -39,7 +39,7 @@ impl Command {
     pub(super) fn assist(&mut self, graph: &TrainingGraph, state: &CharacterState) -> f32 {
         let coordinate = if self.is_released() { 0.0 } else { self.asked };
         self.seen_target = self.target;
-        if !self.assisted {
+        if !self.assisted || graph.strafe(self.position).0 > 0.0 {
             return coordinate;
         }
         if self.push(graph) == 0.0 {

@@ -3,7 +3,7 @@
 use policy_core::training::{Edge, GraphError, Layer, Node};
 use policy_core::{Mlp, NodeId, PolicyGraph};
 
-use crate::env::command::DT_SECS;
+use crate::env::command::{DT_SECS, StrafeConfig};
 use crate::env::config::EnvironmentConfig;
 use crate::env::termination::TerminationRule;
 
@@ -14,6 +14,8 @@ pub struct GraphNode {
     pub name: String,
     /// Speed that its policy is commanded to, metres per second.
     pub speed_mps: f32,
+    /// How its policy is asked to strafe, if it does.
+    pub strafe: Option<StrafeConfig>,
     /// Least scale of the reward for its speed, metres per second.
     pub speed_scale_mps: f32,
     /// Early-termination threshold of its clips' tracking, metres.
@@ -40,6 +42,7 @@ impl GraphNode {
         Self {
             name: name.into(),
             speed_mps: config.command.speed_mps,
+            strafe: config.command.strafe,
             speed_scale_mps: config.reward.speed_scale_mps,
             max_tracking_error_metres: config.termination.max_tracking_error_metres,
             termination,
@@ -73,6 +76,7 @@ pub(super) fn policy_graph(
         name: node.name.clone(),
         fall_height: node.fall_height,
         speed_mps: Some(node.speed_mps),
+        strafes: node.strafe.is_some(),
     };
     let policies = vec![policy; nodes.len()];
     PolicyGraph::from_parts(nodes.iter().map(known).collect(), &edges, paths, &policies)

@@ -1,6 +1,6 @@
 //! Starts where an episodic skill hands over, as in a game: the character is dropped limp, or in a gait, and the skill plays.
 
-use policy_core::training::RISE_SECONDS;
+use policy_core::training::{RISE_SECONDS, TARGET_RANGE_METRES};
 use policy_core::{Command as GameCommand, Controller, SkillEnd, SkillId};
 
 use super::super::command::{Command, DT_SECS};
@@ -8,9 +8,6 @@ use super::super::env::{Env, EnvContext};
 
 /// Ticks that the skill may take, twice what a game gives a rise; after that the start is given up.
 const RISE_TICKS: u32 = (2.0 * RISE_SECONDS / DT_SECS) as u32;
-
-/// Distance of the target of a skill that starts in a gait, metres.
-const AHEAD_METRES: f32 = 5.0;
 
 /// An episodic skill, what it starts from, and where on the graph it hands over.
 #[derive(Clone, Debug)]
@@ -44,7 +41,7 @@ impl Env {
         }
         let mut controller = hand_over.controller.clone();
         controller.reset();
-        let target = out_of.map(|_| self.root_position() + AHEAD_METRES * self.heading().direction());
+        let target = out_of.map(|_| self.root_position() + TARGET_RANGE_METRES * self.heading().direction());
         let mut asked = GameCommand { skill: Some(hand_over.skill), target, ..GameCommand::default() };
         for _ in 0..RISE_TICKS {
             let targets = controller.tick(&self.state, &asked, DT_SECS);

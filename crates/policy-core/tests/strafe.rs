@@ -1,0 +1,118 @@
+//! Facing one way and moving another.
+
+mod common;
+
+use std::sync::Arc;
+
+use common::standing;
+use policy_core::bindings::{Control, PathBinding};
+use policy_core::glam::{Quat, Vec2};
+use policy_core::training::strafing_share;
+use policy_core::{
+    Bindings, Blend, Button, CharacterPack, CharacterState, Command, CommandMapper, Controller,
+    ControllerConfig, GamepadState, Goal, Heading, PathId, PolicyId, TurnAssist, observe_into, target_input,
+};
+
+const DT: f32 = 1.0 / 30.0;
+
+/// The made-up pack, whose crouch strafes; it lies at 2 of the second path.
+fn pack() -> Arc<CharacterPack> {
+    let mut manifest = common::manifest();
+    manifest.policies[4].strafes = true;
+    Arc::new(CharacterPack::from_parts(manifest, common::tensors(0.0)).unwrap())
+}
+
+fn at(node: &str) -> Controller {
+    let pack = pack();
+    let start = pack.graph().node_named(node).unwrap();
+    Controller::with_config(pack, ControllerConfig { start, ..ControllerConfig::default() })
+}
+
+/// Standing, turned by an angle.
+fn turned(radians: f32) -> CharacterState {
+    let mut state = standing();
+    for body in &mut state.bodies {
+        let turn = Quat::from_rotation_z(radians);
+        (body.position, body.rotation) = (turn * body.position, turn * body.rotation);
+    }
+    state
+}
+
+/// The normalised observation of a controller at a node that is to face along x, and of one that is not.
+fn seen(node: &str, facing: Option<Vec2>) -> Vec<f32> {
+    let (mut controller, state) = (at(node), turned(0.3));
+    let asked = Command { target: Some(Vec2::new(0.0, 3.0)), facing, ..Command::default() };
+    controller.tick(&state, &asked, DT);
+    controller.policy_input().to_vec()
+}
+
+#[test]
+fn a_policy_that_strafes_sees_what_is_left_to_turn_and_its_own_target() {
+    let (pack, state) = (pack(), turned(0.3));
+    let mut expected = vec![0.0; 223];
+    observe_into(pack.skeleton(), &state, &mut expected);
+    // The root's x axis, whose y is the sine of the angle to the way to face, to the left.
+    let (sin, cos) = (-0.3_f32).sin_cos();
+    (expected[43], expected[44]) = (cos, -sin);
+    pack.tensors().observation_normaliser.normalise_in_place(&mut expected);
+    expected.extend(target_input(&state, Vec2::new(0.0, 3.0)));
+    for (is, expected) in seen("crouch", Some(Vec2::X * 4.0)).iter().zip(&expected) {
+        assert!((is - expected).abs() < 1e-5, "{is} instead of {expected}");
+    }
+}
+
+#[test]
+fn another_policy_and_one_that_is_to_face_no_way_see_what_they_always_see() {
+    assert_eq!(seen("walk", Some(Vec2::X)), seen("walk", None));
+    let (own, faces) = (seen("crouch", None), seen("crouch", Some(Vec2::X)));
+    let differ = own.iter().zip(&faces).enumerate().filter(|(_, (a, b))| a != b);
+    assert_eq!(differ.map(|(index, _)| index).collect::<Vec<_>>(), [43, 44]);
+}
+
+#[test]
+fn the_share_is_that_of_the_blend_weights() {
+    let pack = pack();
+    let share = |blend: &Blend| strafing_share(pack.graph(), blend);
+    let [walk, crouch] = [PolicyId::new(1), PolicyId::new(4)];
+    assert_eq!(share(&Blend::single(walk)), 0.0);
+    assert_eq!(share(&Blend::single(crouch)), 1.0);
+    assert!((share(&Blend::between(walk, crouch, 0.25)) - 0.25).abs() < 1e-6);
+    assert_eq!(share(&Blend::between(walk, crouch, f32::NAN)), 0.0);
+    assert_eq!(share(&Blend::single(PolicyId::new(63))), 0.0);
+}
+
+#[test]
+fn turn_assist_leaves_a_policy_that_strafes_alone() {
+    let (pack, state) = (pack(), standing());
+    let goal = Goal::Path { path: PathId::new(1), coordinate: 2.0 };
+    let asked = Command { target: Some(Vec2::new(-5.0, 0.0)), goal, ..Command::default() };
+    assert_eq!(TurnAssist::default().adjusted(pack.graph(), &state, &asked), asked);
+}
+
+#[test]
+fn its_button_makes_the_character_face_where_the_camera_looks() {
+    let pack = pack();
+    let binding = |path: &str, button| PathBinding {
+        path: path.into(),
+        control: Control::Button(button),
+        first: 2.0,
+        needs_stick: false,
+    };
+    // The second path ends with a crawl, which does not strafe; of the first one nothing does.
+    let mut manifest = common::manifest();
+    manifest.policies[4].strafes = true;
+    manifest.paths[1].nodes.truncate(3);
+    let short = CharacterPack::from_parts(manifest, common::tensors(0.0)).unwrap();
+    let paths = vec![binding("stance", Button::RightStick), binding("speed", Button::North)];
+    let bindings = Bindings { paths, ..Bindings::default() };
+    let camera = Heading::from_angle(1.0);
+    let facing = |pack: &CharacterPack, button: Option<Button>| {
+        let mut pad = GamepadState { left_stick: [1.0, 0.0], ..GamepadState::default() };
+        button.into_iter().for_each(|button| pad.buttons.set(button, true));
+        CommandMapper::new(pack, &bindings).map(&pad, camera, &standing()).facing
+    };
+    assert_eq!(facing(&short, Some(Button::RightStick)), Some(camera.direction()));
+    assert_eq!(facing(&short, Some(Button::North)), None);
+    assert_eq!(facing(&short, None), None);
+    assert_eq!(facing(&pack, Some(Button::RightStick)), None);
+}
