@@ -2,6 +2,8 @@
 
 use std::path::PathBuf;
 
+use files::quoted;
+
 /// Why a clip can't be read or fitted.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
@@ -126,4 +128,13 @@ pub enum ClipError {
         /// Index of the body.
         body: usize,
     },
+}
+
+/// The index of the body of this name among a clip's bodies.
+pub(crate) fn find_body(clip: &str, bodies: &[String], name: &str) -> Result<usize, ClipError> {
+    bodies.iter().position(|body| body == name).ok_or_else(|| ClipError::Body {
+        clip: clip.to_owned(),
+        expected: name.to_owned(),
+        found: quoted(&bodies.join(", ")),
+    })
 }

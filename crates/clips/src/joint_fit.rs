@@ -6,11 +6,11 @@
 
 use std::f32::consts::{PI, TAU};
 
-use files::quoted;
 use glam::{EulerRot, Mat3, Quat, Vec3};
 use policy_core::Skeleton;
 
-use super::ClipError;
+use crate::ClipError;
+use crate::error::find_body;
 
 /// Rounds of the search for the angles of a body with other hinges.
 const SEARCH_ROUNDS: usize = 20;
@@ -54,11 +54,7 @@ impl JointFit {
         let mut fits = Vec::new();
         for &id in skeleton.jointed_bodies() {
             let name = &skeleton.body(id).name;
-            let source = bodies.iter().position(|b| b == name).ok_or_else(|| ClipError::Body {
-                clip: clip.into(),
-                expected: name.clone(),
-                found: quoted(&bodies.join(", ")),
-            })?;
+            let source = find_body(clip, bodies, name)?;
             let of_body = skeleton.joints().iter().enumerate().filter(|(_, joint)| joint.body == id);
             let (joints, axes) = of_body.map(|(index, joint)| (index, joint.axis.normalize())).unzip();
             fits.push(BodyFit { source, joints, solve: solve(axes) });

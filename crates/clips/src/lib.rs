@@ -195,9 +195,11 @@ impl Clip {
     }
 
     /// The same played faster or slower, by a factor above 0.
-    #[must_use]
-    pub fn at_pace(&self, factor: f32) -> Self {
-        Self { times: self.times.iter().map(|t| t / factor).collect(), ..self.clone() }
+    ///
+    /// # Errors
+    /// When it becomes too long, or so short that times are no longer apart.
+    pub fn at_pace(&self, factor: f32) -> Result<Self, ClipError> {
+        Self { times: self.times.iter().map(|t| t / factor).collect(), ..self.clone() }.checked()
     }
 
     /// The mirror image: y negated, and bodies with `left` in their names swapped with those with `right`.

@@ -3,9 +3,9 @@
 use std::f32::consts::PI;
 use std::sync::Arc;
 
-use files::quoted;
 use glam::{Quat, Vec3};
 
+use crate::error::find_body;
 use crate::{Clip, ClipError};
 
 /// Seconds of a cycle of two steps.
@@ -43,21 +43,17 @@ impl Clip {
         let standing = self.towards(self, 1.0)?;
         // A clip that was checked has a frame.
         let (pose, height) = (&standing.local_rotations[0], standing.root_positions[0].z);
-        let legs = ["left", "right"].map(|side| self.leg(side));
-        let [left, right] = legs;
-        let legs = [left?, right?];
+        let legs = [self.leg("left")?, self.leg("right")?];
         let reach = 0.5 * mps * CYCLE_SECS * STANCE / (LEG_SHARE * height);
         let lowest = BEND[0].cos() * (SPREAD + reach).cos();
         let frame = |index: usize| {
             let phase = index as f32 / FRAMES as f32;
             let mut rotations = pose.clone();
-            for (side, bodies) in [1.0, -1.0].into_iter().zip(&legs) {
+            for (side, [thigh, shin, foot]) in [1.0, -1.0].into_iter().zip(legs) {
                 let leg = leg_at((phase + 0.25 * (1.0 - side)).fract(), side, reach, lowest);
-                let turns = [leg.thigh, leg.shin, leg.foot];
-                for ((body, turn), first) in bodies.iter().zip(turns).zip([true, false, false]) {
-                    let stands = pose[*body];
-                    rotations[*body] = if first { turn * stands } else { stands * turn };
-                }
+                rotations[thigh] = leg.thigh * pose[thigh];
+                rotations[shin] = pose[shin] * leg.shin;
+                rotations[foot] = pose[foot] * leg.foot;
             }
             rotations
         };
@@ -75,16 +71,8 @@ impl Clip {
     }
 
     fn leg(&self, side: &str) -> Result<[usize; 3], ClipError> {
-        let mut bodies = [0; 3];
-        for (body, part) in bodies.iter_mut().zip(["thigh", "shin", "foot"]) {
-            let name = format!("{side}_{part}");
-            *body = self.bodies.iter().position(|b| *b == name).ok_or_else(|| ClipError::Body {
-                clip: self.name.clone(),
-                expected: name,
-                found: quoted(&self.bodies.join(", ")),
-            })?;
-        }
-        Ok(bodies)
+        let find = |part: &str| find_body(&self.name, &self.bodies, &format!("{side}_{part}"));
+        Ok([find("thigh")?, find("shin")?, find("foot")?])
     }
 }
 

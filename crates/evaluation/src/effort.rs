@@ -6,6 +6,7 @@ use super::Section;
 use super::encounters::{RACE_SECS, nominal_secs};
 use super::player::STRAIGHT_COORDINATES;
 use super::press::bound_buttons;
+use super::response::WAYS;
 use super::stress::{CASE_COUNT, GET_UP_SECS, GROUND_COUNT, PadKind, nominal_trials};
 use super::trial::Gait;
 
@@ -140,7 +141,7 @@ impl Effort {
             Section::Stops => of(gaits * self.settled, 3.5),
             Section::Straight => of(paths * STRAIGHT_COORDINATES * self.straight, 9.0),
             Section::Strafe if graph.path_named("strafe").is_none() => 0.0,
-            Section::Strafe => of(8 * self.settled, 8.0),
+            Section::Strafe => of(WAYS * self.settled, 8.0),
             Section::Rise => of(self.settled, 5.0),
             Section::Buttons => of(gaits * self.pressed * bound_buttons(pack).len(), 6.0),
             Section::Jumps => of(self.settled * pack.skills().len(), 4.0),

@@ -345,8 +345,14 @@ impl Controller {
 
     /// The target that the policy is to see. Without one there is no course to hold, and the target of a skill, or of a character
     /// that strafes, stays as it is.
-    fn steered(&mut self, state: &CharacterState, target: Option<Vec2>, dt: f32) -> Option<Vec2> {
-        let steers = self.state.report.skill.is_none() && self.strafing_share() == 0.0;
+    fn steered(
+        &mut self,
+        state: &CharacterState,
+        target: Option<Vec2>,
+        strafing: f32,
+        dt: f32,
+    ) -> Option<Vec2> {
+        let steers = self.state.report.skill.is_none() && strafing == 0.0;
         let steering = self.config.steering.filter(|_| steers);
         let (Some(steering), Some(target)) = (steering, target) else {
             self.state.steering = SteeringState::default();
@@ -355,17 +361,13 @@ impl Controller {
         Some(steering.adjusted(&mut self.state.steering, state, target, dt))
     }
 
-    fn strafing_share(&self) -> f32 {
-        strafing_share(self.pack.graph(), &self.state.report.blend)
-    }
-
     fn observe(&mut self, state: &CharacterState, command: &Command, dt: f32) {
-        let target_world = self.steered(state, self.target(state, command), dt);
-        let facing = (command.facing, self.strafing_share());
+        let strafing = strafing_share(self.pack.graph(), &self.state.report.blend);
+        let target_world = self.steered(state, self.target(state, command), strafing, dt);
         let skeleton = self.pack.skeleton();
         let (observation, target) = self.input.split_at_mut(skeleton.observation_len());
         observe_into(skeleton, state, observation);
-        face_in_observation(skeleton, state, facing, observation);
+        face_in_observation(skeleton, state, (command.facing, strafing), observation);
         self.pack.tensors().observation_normaliser.normalise_in_place(observation);
         self.state.report.target = target_world.map_or([0.0; 2], |target| target_input(state, target));
         target.copy_from_slice(&self.state.report.target);

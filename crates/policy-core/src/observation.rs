@@ -56,6 +56,11 @@ pub fn observe_into(skeleton: &Skeleton, state: &CharacterState, out: &mut [f32]
     }
 }
 
+/// Where the x axis of the root begins in an observation: after a height and the positions of the other bodies.
+pub(crate) fn root_axis_at(skeleton: &Skeleton) -> usize {
+    1 + 3 * (skeleton.body_count() - 1)
+}
+
 /// The target as a policy sees it: its direction in the heading frame times min(distance, 5 m) / 2.
 ///
 /// `target_world` is a point on the ground in metres. A target below the root gives zero.

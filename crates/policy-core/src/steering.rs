@@ -6,7 +6,6 @@ use glam::Vec2;
 
 use crate::heading::Heading;
 use crate::state::CharacterState;
-use crate::strafe::wrapped;
 
 /// Slowest speed that has a direction, metres per second. Below it the heading counts.
 const LEAST_SPEED: f32 = 0.1;
@@ -115,4 +114,9 @@ pub(crate) fn side_of([x, y]: [f32; 2]) -> f32 {
     } else {
         0.0
     }
+}
+
+/// An angle in [-pi, pi].
+fn wrapped(radians: f32) -> f32 {
+    radians - 2.0 * PI * libm::roundf(radians / (2.0 * PI))
 }

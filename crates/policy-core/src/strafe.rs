@@ -4,13 +4,12 @@
 //! policy that axis alone lies in the frame of the way to face: the number is the sine of what is left to turn. The policy needs no
 //! further inputs, and everything else is as the other policies know it.
 
-use core::f32::consts::PI;
-
 use glam::Vec2;
 
 use crate::blend::Blend;
 use crate::graph::PolicyGraph;
 use crate::heading::Heading;
+use crate::observation::root_axis_at;
 use crate::skeleton::Skeleton;
 use crate::state::CharacterState;
 
@@ -44,16 +43,10 @@ pub fn face_in_observation(
     }
     let local = Heading::from_rotation(state.root().rotation).heading_from_world_2d(facing);
     let left = libm::atan2f(local.y, local.x).clamp(-MOST_RADIANS, MOST_RADIANS) * share;
-    // A height, positions of the other bodies, then the axes, those of the root first.
-    let at = 1 + 3 * (skeleton.body_count() - 1);
+    let at = root_axis_at(skeleton);
     let axis = Vec2::new(observation[at], observation[at + 1]);
     let turned = Heading::from_angle(left).heading_from_world_2d(axis);
     observation[at..at + 2].copy_from_slice(&[turned.x, turned.y]);
-}
-
-/// An angle in [-pi, pi].
-pub(crate) fn wrapped(radians: f32) -> f32 {
-    radians - 2.0 * PI * libm::roundf(radians / (2.0 * PI))
 }
 
 #[cfg(test)]

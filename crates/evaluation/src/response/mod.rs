@@ -8,6 +8,7 @@ mod turn;
 
 pub use start::{StartReport, measure_starts};
 pub use stop::{StopReport, measure_stops};
+pub(crate) use strafe::WAYS;
 pub use strafe::{StrafeReport, measure_strafe};
 pub use straight::{StraightPoint, commanded_mps, measure_straight};
 pub use turn::{TURNS_DEGREES, TurnDetector, TurnReport, measure_turns};

@@ -7,11 +7,15 @@ use policy_core::{Button, Heading};
 use random::Rng;
 use serde::{Deserialize, Serialize};
 
+use super::turn::TurnDetector;
 use crate::Rig;
 use crate::trial::{Gait, TICK_SECS, Trial, mean, median, ticks};
 
+/// How many ways to go are measured.
+pub(crate) const WAYS: usize = 8;
+
 /// Ways to go, from the way to face, degrees to the left.
-const WAYS: [(&str, f32); 8] = [
+const DIRECTIONS: [(&str, f32); WAYS] = [
     ("ahead", 0.0),
     ("ahead_left", 45.0),
     ("left", 90.0),
@@ -30,9 +34,6 @@ const MEASURED_SECS: f32 = 4.0;
 
 /// How far the camera turns then, degrees.
 const CAMERA_DEGREES: f32 = 90.0;
-
-/// A character faces the camera's way when it is off by less, degrees, for so many seconds.
-const FACING: (f32, f32) = (20.0, 0.3);
 
 /// Facing takes no longer, seconds.
 const LIMIT_SECS: f32 = 6.0;
@@ -80,7 +81,7 @@ pub fn measure_strafe(rig: &Rig<'_>) -> BTreeMap<String, StrafeReport> {
         };
         (name.to_owned(), report)
     };
-    WAYS.into_iter().map(report).collect()
+    DIRECTIONS.into_iter().map(report).collect()
 }
 
 fn go(rig: &Rig<'_>, walk: &Gait, asked: f32, seed: u64) -> Option<Way> {
@@ -107,13 +108,10 @@ fn go(rig: &Rig<'_>, walk: &Gait, asked: f32, seed: u64) -> Option<Way> {
     let side = if rng.chance(0.5) { 1.0 } else { -1.0 };
     let camera = side * CAMERA_DEGREES.to_radians();
     trial.camera = Heading::from_angle(camera);
-    let mut held = 0;
-    for tick in 1..=ticks(LIMIT_SECS) {
+    let mut turned = TurnDetector::new(camera);
+    for _ in 0..ticks(LIMIT_SECS) {
         step(&mut trial)?;
-        let off = Vec2::from_angle(trial.heading()).angle_to(Vec2::from_angle(camera));
-        held = if off.abs().to_degrees() < FACING.0 { held + 1 } else { 0 };
-        if held == ticks(FACING.1) {
-            let secs = (tick - held) as f32 * TICK_SECS;
+        if let Some(secs) = turned.tick(Vec2::from_angle(trial.heading())) {
             return Some((velocity, heading, Some(secs)));
         }
     }

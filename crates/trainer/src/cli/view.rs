@@ -1,6 +1,7 @@
 //! `trainer view`: a clip fitted to the humanoid, told in numbers, written as poses, or drawn by the demo, which is
 //! a program of its own: the trainer itself draws nothing.
 
+use std::ops::RangeInclusive;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
@@ -10,9 +11,9 @@ use clips::{ClipFolder, Fitted, fit, load_file};
 use files::write_atomically;
 use physics_bridge::Model;
 use serde::Serialize;
+use trainer::recipe::ClipShare;
 
 use super::output::say;
-use trainer::recipe::ClipShare;
 
 /// Arguments of the verb.
 #[derive(Args)]
@@ -23,10 +24,10 @@ pub(crate) struct Arguments {
     #[arg(long)]
     reversed: bool,
     /// Play it faster or slower by this factor.
-    #[arg(long, default_value_t = 1.0, value_name = "FACTOR")]
+    #[arg(long, default_value_t = 1.0, value_name = "FACTOR", value_parser = pace)]
     pace: f32,
     /// Make steps to the left at this speed, metres per second, of its first pose.
-    #[arg(long, value_name = "MPS")]
+    #[arg(long, value_name = "MPS", value_parser = side_steps)]
     side_steps: Option<f32>,
     /// File to write the poses to: JSON, one list of `qpos` a control tick.
     #[arg(long)]
@@ -37,6 +38,20 @@ pub(crate) struct Arguments {
     /// The demo's program, instead of the `policy-space` beside this one.
     #[arg(long, value_name = "PATH", requires = "pictures")]
     viewer: Option<PathBuf>,
+}
+
+fn pace(text: &str) -> Result<f32, String> {
+    number(text, 0.1..=10.0)
+}
+
+fn side_steps(text: &str) -> Result<f32, String> {
+    number(text, 0.1..=1.5)
+}
+
+/// A number within the range that a recipe allows too.
+fn number(text: &str, range: RangeInclusive<f32>) -> Result<f32, String> {
+    let within = text.parse().ok().filter(|number| range.contains(number));
+    within.ok_or_else(|| format!("expected a number from {} to {}", range.start(), range.end()))
 }
 
 /// Poses at the control rate, for a renderer to play.
@@ -158,6 +173,15 @@ mod tests {
         );
         let own = std::env::current_exe().unwrap();
         assert_eq!(viewer_program(Some(&own)).unwrap(), own);
+    }
+
+    #[test]
+    fn numbers_out_of_range_are_refused() {
+        assert_eq!((pace("0.5"), side_steps("0.4")), (Ok(0.5), Ok(0.4)));
+        for text in ["0", "-1", "NaN", "inf", "fast", "11"] {
+            assert_eq!(pace(text), Err("expected a number from 0.1 to 10".to_owned()), "{text}");
+        }
+        assert!(side_steps("1.6").is_err());
     }
 
     #[test]

@@ -47,15 +47,15 @@ impl ClipShare {
     /// The whole clip of this name and its mirror image.
     #[must_use]
     pub fn whole(name: &str) -> Self {
-        let (seconds, side_steps_mps) = (None, None);
+        let name = name.to_owned();
         Self {
-            name: name.to_owned(),
+            name,
             share: 1.0,
             mirror: true,
-            seconds,
+            seconds: None,
             reversed: false,
             pace: 1.0,
-            side_steps_mps,
+            side_steps_mps: None,
         }
     }
 
@@ -81,7 +81,7 @@ impl ClipShare {
         if self.reversed {
             clip = clip.reversed();
         }
-        Ok(if self.pace == 1.0 { clip } else { clip.at_pace(self.pace) })
+        if self.pace == 1.0 { Ok(clip) } else { clip.at_pace(self.pace) }
     }
 }
 
