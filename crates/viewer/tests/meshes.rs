@@ -70,7 +70,7 @@ fn its_rest_pose_is_that_of_the_mjcf() {
 #[test]
 fn joints_at_rest_leave_the_mesh_where_it_is() {
     let mesh = SkinnedMesh::from_bytes(HUMANOID_GLB, &rig()).unwrap();
-    assert_eq!((mesh.joints.len(), mesh.levels.len()), (15, 3));
+    assert_eq!((mesh.joints.len(), mesh.levels.len()), (15, 4));
     for pair in mesh.levels.windows(2) {
         assert!(pair[1].vertices.len() * 3 < pair[0].vertices.len() * 2);
     }

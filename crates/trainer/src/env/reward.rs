@@ -38,6 +38,9 @@ pub struct RewardConfig {
     pub linear_speed_share: f32,
     /// Share of the facing reward that only a character that nearly faces its target gets.
     pub strict_facing_share: f32,
+    /// How much of the reward for speed a character loses that faces away from its target. A low gait otherwise creeps aside
+    /// and backwards rather than turn.
+    pub facing_factor: f32,
     /// Share of the task reward for the height of the root: that of the clips at the position on the graph.
     pub height_share: f32,
     /// Weight of the reward for tracking a clip. Above zero an episode fails when the tracking error exceeds its threshold,
@@ -66,6 +69,7 @@ impl Default for RewardConfig {
             sideways_weight: 0.25,
             linear_speed_share: 0.0,
             strict_facing_share: 0.0,
+            facing_factor: 0.0,
             height_share: 0.0,
             tracking_weight: 0.0,
             tracking_share: 0.0,
@@ -187,7 +191,8 @@ pub fn target_reward(
     let off = (velocity - commanded_mps * direction).length() / (2.0 * pace.speed_mps.max(1.0));
     let linear = 0.7 * (1.0 - off).max(0.0);
     // Turning to the target and going there must not be worth much to a character that is to face elsewhere.
-    let speed = (bells + config.linear_speed_share * (linear - bells)) * (1.0 - share * loss(to_own));
+    let away = (share * loss(to_own)).max(config.facing_factor * (1.0 - share) * near * loss(to_target));
+    let speed = (bells + config.linear_speed_share * (linear - bells)) * (1.0 - away);
     let [begins, fully] = TURNING_RADIANS;
     let turns = |aside: f32| ((aside.abs() - begins) / (fully - begins)).clamp(0.0, 1.0);
     let turning = (1.0 - share) * near * turns(to_target) + share * turns(to_own);

@@ -78,6 +78,19 @@ fn a_strict_facing_makes_a_little_sideways_cost_much() {
 }
 
 #[test]
+fn facing_away_takes_the_reward_for_speed() {
+    let at = |degrees: f32, facing_factor: f32| {
+        let target = 5.0 * Vec2::from_angle(degrees.to_radians());
+        let config = RewardConfig { facing_factor, ..RewardConfig::default() };
+        with(&config, 0.3 * target.normalize(), target, [0.3, 0.6]).task
+    };
+    assert!((at(0.0, 1.0) - 1.0).abs() < 1e-6);
+    // A quarter turn away: half of 0.3 for facing, and half of 0.7 for speed.
+    assert!((at(90.0, 1.0) - 0.5).abs() < 1e-4 && (at(90.0, 0.5) - 0.675).abs() < 1e-4);
+    assert!(at(180.0, 1.0).abs() < 1e-4 && (at(180.0, 0.0) - 0.7).abs() < 1e-4);
+}
+
+#[test]
 fn every_centimetre_off_the_ground_pays() {
     let at = |metres: f32| {
         let mut state = CharacterState::new(&Skeleton::humanoid());

@@ -1,5 +1,5 @@
-//! Writes the mannequin as glTF 2.0 binary: nodes that carry the body names, one skin, two materials, a fine
-//! mesh and a coarse one for crowds (in the mesh called `mannequin_lod1`).
+//! Writes the mannequin as glTF 2.0 binary: nodes that carry the body names, one skin, two materials, and a mesh for each level of
+//! detail (the coarser ones called `mannequin_lod1` and so on).
 //!
 //! glTF is y up and faces z; the character is z up and faces x: `(x, y, z)` becomes `(y, z, x)`.
 

@@ -32,10 +32,8 @@ pub struct RenderConfig {
     pub shadow_taps: u32,
     /// Furthest that shadows reach from the focus, metres.
     pub shadow_reach_m: f32,
-    /// Level of detail of few figures, 0 the finest; the last there is when there are fewer.
-    pub finest: usize,
-    /// Figures above which the coarsest mesh is drawn.
-    pub coarse_above: usize,
+    /// Size on the screen, pixels, below which a figure is drawn with the next coarser mesh, from the finest on.
+    pub level_pixels: [f32; 3],
     /// Sun and sky.
     pub light: Light,
 }
@@ -45,7 +43,8 @@ impl RenderConfig {
     #[must_use]
     pub fn for_adapter(is_software: bool) -> Self {
         if is_software {
-            Self { shadow_size: 1024, shadow_taps: 8, finest: 1, coarse_above: 3, ..Self::default() }
+            let level_pixels = [f32::INFINITY, f32::INFINITY, 350.0];
+            Self { shadow_size: 1024, shadow_taps: 8, level_pixels, ..Self::default() }
         } else {
             Self::default()
         }
@@ -59,8 +58,7 @@ impl Default for RenderConfig {
             shadow_size: 2048,
             shadow_taps: 24,
             shadow_reach_m: 30.0,
-            finest: 0,
-            coarse_above: 16,
+            level_pixels: [400.0, 200.0, 100.0],
             light: Light::default(),
         }
     }

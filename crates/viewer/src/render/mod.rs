@@ -8,6 +8,7 @@ mod appearance;
 mod buffers;
 mod config;
 mod gpu_data;
+mod levels;
 mod model;
 mod off_screen;
 mod pipelines;
@@ -152,13 +153,6 @@ impl Renderer {
         target.finish(&self.gpu, encoder)
     }
 
-    /// Level of detail for so many figures.
-    fn level<'a>(&self, buffers: &'a MeshBuffers, figures: u32) -> &'a model::LevelBuffers {
-        let coarse = figures as usize > self.config.coarse_above;
-        let last = buffers.levels.len() - 1;
-        &buffers.levels[if coarse { last } else { self.config.finest.min(last) }]
-    }
-
     fn draw_shadows(&self, encoder: &mut wgpu::CommandEncoder, counts: &Counts) {
         let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
             label: Some("shadows"),
@@ -168,20 +162,17 @@ impl Renderer {
         pass.set_bind_group(0, &self.frame_group, &[]);
         pass.set_pipeline(&self.pipelines.thing_shadow);
         self.draw_solids(&mut pass, &self.things, &counts.things);
-        // A shadow's edge is softer than the coarse mesh is coarse.
-        let Some(level) = self.mesh_buffers.as_ref().and_then(|buffers| buffers.levels.last()) else {
-            return;
-        };
-        if counts.figures == 0 {
-            return;
-        }
+        let Some(buffers) = &self.mesh_buffers else { return };
         pass.set_pipeline(&self.pipelines.skinned_shadow);
         pass.set_bind_group(2, &self.figures_group, &[]);
-        pass.set_vertex_buffer(0, level.vertices.slice(..));
         pass.set_vertex_buffer(1, self.instances.buffer().slice(..));
-        pass.set_index_buffer(level.indices.slice(..), wgpu::IndexFormat::Uint32);
-        let end = level.parts.iter().map(|p| p.1.end).max().unwrap_or(0);
-        pass.draw_indexed(0..end, 0, 0..counts.figures);
+        for (level, figures) in counts.figures.shadows(buffers.levels.len()) {
+            let level = &buffers.levels[level];
+            pass.set_vertex_buffer(0, level.vertices.slice(..));
+            pass.set_index_buffer(level.indices.slice(..), wgpu::IndexFormat::Uint32);
+            let end = level.parts.iter().map(|p| p.1.end).max().unwrap_or(0);
+            pass.draw_indexed(0..end, 0, figures);
+        }
     }
 
     fn draw_picture(&self, encoder: &mut wgpu::CommandEncoder, view: &wgpu::TextureView, counts: &Counts) {
@@ -239,21 +230,22 @@ impl Renderer {
         }
     }
 
-    /// One draw call for each material, however many figures there are.
+    /// One draw call for each material of each level, however many figures there are.
     fn draw_figures(&self, pass: &mut wgpu::RenderPass<'_>, counts: &Counts) {
         let Some(buffers) = &self.mesh_buffers else { return };
-        if counts.figures == 0 || counts.hide_figures {
-            return;
-        }
-        let level = self.level(buffers, counts.figures);
         pass.set_pipeline(&self.pipelines.skinned);
         pass.set_bind_group(2, &self.figures_group, &[]);
-        pass.set_vertex_buffer(0, level.vertices.slice(..));
         pass.set_vertex_buffer(1, self.instances.buffer().slice(..));
-        pass.set_index_buffer(level.indices.slice(..), wgpu::IndexFormat::Uint32);
-        for (material, indices) in &level.parts {
-            pass.set_bind_group(3, &buffers.materials[*material], &[]);
-            pass.draw_indexed(indices.clone(), 0, 0..counts.figures);
+        for (level, figures) in buffers.levels.iter().zip(&counts.figures.levels) {
+            if figures.is_empty() {
+                continue;
+            }
+            pass.set_vertex_buffer(0, level.vertices.slice(..));
+            pass.set_index_buffer(level.indices.slice(..), wgpu::IndexFormat::Uint32);
+            for (material, indices) in &level.parts {
+                pass.set_bind_group(3, &buffers.materials[*material], &[]);
+                pass.draw_indexed(indices.clone(), 0, figures.clone());
+            }
         }
     }
 }

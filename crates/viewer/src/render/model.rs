@@ -1,5 +1,7 @@
 //! A [`SkinnedMesh`] in the device's memory.
 
+use glam::Vec3;
+
 use super::buffers::fixed;
 use super::pipelines::Layouts;
 use crate::mesh::{Level, Material, SkinnedMesh};
@@ -14,7 +16,10 @@ pub(super) struct LevelBuffers {
 
 #[derive(Debug)]
 pub(super) struct MeshBuffers {
+    /// Finest first.
     pub(super) levels: Vec<LevelBuffers>,
+    /// The longest side of the mesh as it stands, metres.
+    pub(super) metres: f32,
     pub(super) materials: Vec<wgpu::BindGroup>,
 }
 
@@ -22,9 +27,18 @@ impl MeshBuffers {
     pub(super) fn new(device: &wgpu::Device, layouts: &Layouts, mesh: &SkinnedMesh) -> Self {
         Self {
             levels: mesh.levels.iter().map(|level| level_buffers(device, level)).collect(),
+            metres: mesh.levels.first().map_or(0.0, longest_side),
             materials: mesh.materials.iter().map(|material| bind(device, layouts, material)).collect(),
         }
     }
+}
+
+fn longest_side(level: &Level) -> f32 {
+    let corners = (Vec3::INFINITY, Vec3::NEG_INFINITY);
+    let (low, high) = level.vertices.iter().fold(corners, |(low, high), vertex| {
+        (low.min(vertex.position.into()), high.max(vertex.position.into()))
+    });
+    (high - low).max_element().max(0.0)
 }
 
 fn level_buffers(device: &wgpu::Device, level: &Level) -> LevelBuffers {
