@@ -28,6 +28,7 @@ pub fn pack(model: &Model, mjcf: &str) -> CharacterPack {
         fall_height: None,
         speed_mps: None,
         strafes: false,
+        rough_ground: None,
         origin: "made up".into(),
     };
     let end = EndEntry {

@@ -1,7 +1,7 @@
 //! The golden values for ports are those that this implementation gives, and they cover what a port can get wrong.
 
 use integration_tests::golden::largest_difference;
-use integration_tests::golden::port::{made_anew, port_golden};
+use integration_tests::golden::port::{PortTick, made_anew, port_golden};
 
 /// An implementation in single precision agrees with another within this.
 const TOLERANCE: f32 = 1e-5;
@@ -40,6 +40,9 @@ fn they_cover_blends_turns_and_standing() {
     assert!(turned, "a heading off the world's axes, which conventions of quaternions show in");
     let moved = ticks.iter().any(|tick| tick.state.linear_velocities[0].length() > 0.3);
     assert!(moved, "velocities that matter");
+    let rises = |tick: &PortTick| tick.state.ground_rises.iter().any(|rise| rise.abs() > 0.01);
+    assert!(ticks.iter().any(rises), "uneven ground");
+    assert!(ticks.iter().any(|tick| tick.state.ground_rises.is_empty()), "level ground");
 }
 
 /// Writes the file anew: `cargo test -p integration-tests --test port -- --ignored`.

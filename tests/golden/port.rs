@@ -67,6 +67,9 @@ pub struct PortState {
     pub joint_velocities: Vec<f32>,
     /// Metres.
     pub ground_height: f32,
+    /// Metres, bodies in the pack's order; empty for level ground.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub ground_rises: Vec<f32>,
 }
 
 /// A command: a point on the ground and a coordinate on a path.
@@ -91,7 +94,7 @@ pub fn port_golden() -> PortGolden {
 }
 
 /// Makes the values anew. Every fifth of 200 ticks of a walk with a moving trigger and a turning target is kept as a
-/// state. Then one controller runs over the kept states alone, so that the file has all that its values depend on.
+/// state, the last of them as if the ground were uneven. Then one controller runs over the kept states alone, so that the file has all that its values depend on.
 ///
 /// # Panics
 /// When the physics diverges or the pack lacks a name.
@@ -99,6 +102,8 @@ pub fn port_golden() -> PortGolden {
 pub fn made_anew() -> PortGolden {
     /// Ticks from one kept state to the next.
     const EVERY: u16 = 5;
+    /// From this tick on a port is to see uneven ground; it walked on flat ground.
+    const UNEVEN_FROM: u16 = 160;
     let pack = reference_pack();
     let mut controller = controller(&pack);
     let mut character = Character::new(&Model::from_mjcf(HUMANOID_MJCF).expect("the humanoid compiles"));
@@ -115,7 +120,11 @@ pub fn made_anew() -> PortGolden {
         let asked = PortCommand { target, path: "speed".into(), coordinate };
         character.control_tick(&mut controller, &command(&pack, &asked), DT_SECS).expect("it only walks");
         if tick % EVERY == EVERY - 1 {
-            kept.push((character.sensed().clone(), asked));
+            let mut state = character.sensed().clone();
+            if tick >= UNEVEN_FROM {
+                state.sense_ground(pack.skeleton(), |at| 0.1 * (3.0 * at.x).sin());
+            }
+            kept.push((state, asked));
         }
     }
     let mut golden = PortGolden {
@@ -152,8 +161,9 @@ impl PortGolden {
 }
 
 fn controller(pack: &Arc<CharacterPack>) -> Controller {
-    // A port may leave steering out: what a policy is shown is the target as it is.
-    let config = ControllerConfig { steering: None, turn_assist: None, ..ControllerConfig::default() };
+    // A port may leave these out: what a policy is shown is the target as it is.
+    let config =
+        ControllerConfig { steering: None, turn_assist: None, give_way: None, ..ControllerConfig::default() };
     Controller::with_config(Arc::clone(pack), config)
 }
 
@@ -179,6 +189,11 @@ impl PortTick {
             angular_velocities: each(|body| body.angular_velocity),
             joint_velocities: state.joint_velocities.clone(),
             ground_height: state.ground_height,
+            ground_rises: if state.ground_rises.iter().all(|rise| *rise == 0.0) {
+                Vec::new()
+            } else {
+                state.ground_rises.clone()
+            },
         };
         let nothing = Vec::new;
         Self {
@@ -207,7 +222,10 @@ impl PortState {
             };
         }
         state.joint_velocities.copy_from_slice(&self.joint_velocities);
-        state.ground_height = self.ground_height;
+        state.sense_level_ground(self.ground_height);
+        if !self.ground_rises.is_empty() {
+            state.ground_rises.clone_from(&self.ground_rises);
+        }
         state
     }
 }

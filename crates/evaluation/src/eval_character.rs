@@ -41,6 +41,7 @@ impl EvalCharacter {
             auto_recover: false,
             turn_assist: None,
             steering: None,
+            give_way: None,
             start,
             ..ControllerConfig::default()
         };

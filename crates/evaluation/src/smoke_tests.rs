@@ -56,6 +56,7 @@ fn pack(falls: bool) -> Arc<CharacterPack> {
         fall_height: falls.then_some(0.5),
         speed_mps: Some(if name == "idle" { 0.0 } else { 1.0 }),
         strafes: false,
+        rough_ground: None,
         origin: "made up".into(),
     };
     let edge = |a: &str, b: &str| EdgeEntry {

@@ -11,13 +11,8 @@ use crate::cause::{Cause, Excess};
 use crate::description::body_poses::{BodyPoses, rotation};
 use crate::description::layout::Layout;
 
-/// Writes what a policy senses of a character; `height` returns that of the ground at a point.
-pub(crate) fn sense_into<M: ModelType>(
-    data: &MjData<M>,
-    layout: &Layout,
-    height: impl FnOnce(f32, f32) -> f32,
-    out: &mut CharacterState,
-) {
+/// Writes what a policy senses of a character, but for the ground.
+pub(crate) fn sense_into<M: ModelType>(data: &MjData<M>, layout: &Layout, out: &mut CharacterState) {
     let (xpos, xquat, cvel) = (data.xpos(), data.xquat(), data.cvel());
     let reference = velocity_reference(data, layout);
     for (body, &id) in out.bodies.iter_mut().zip(&layout.body_ids) {
@@ -32,8 +27,6 @@ pub(crate) fn sense_into<M: ModelType>(
     for (velocity, joint) in out.joint_velocities.iter_mut().zip(&layout.joints) {
         *velocity = qvel[joint.dof] as f32;
     }
-    let root = out.root().position;
-    out.ground_height = height(root.x, root.y);
 }
 
 /// Writes where the bodies of a character are. Allocates only when `out` is of another skeleton.

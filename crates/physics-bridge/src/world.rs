@@ -105,8 +105,8 @@ pub struct World {
     waiting: Vec<Divergence>,
     /// Where each character last was well, by index.
     standing: Box<[Standing]>,
-    /// Height of the ground below each character, by index.
-    ground_heights: Box<[f32]>,
+    /// What each character senses after the last tick, by index: the ground is found once and read often.
+    grounds: Vec<CharacterState>,
     /// What each character sensed in the last control tick, by index.
     sensed: Vec<CharacterState>,
     /// True when the state was changed from outside since the last tick.
@@ -137,12 +137,13 @@ impl World {
             culprits: Vec::new(),
             waiting: Vec::new(),
             standing: Box::default(),
-            ground_heights: Box::default(),
+            grounds: Vec::new(),
             sensed: Vec::new(),
             is_touched: false,
             before: None,
             history: None,
         };
+        world.make_states();
         world.make_room();
         Ok(world)
     }
@@ -193,6 +194,14 @@ impl World {
         self.divergences = Vec::with_capacity(2 * characters + props + 2);
         self.culprits = Vec::with_capacity(characters + props);
         self.waiting = Vec::with_capacity(characters);
+        self.before = None;
+        self.before = Some(Box::new(WorldSnapshot::empty(self)));
+        self.rebuild_history();
+    }
+
+    /// Allocates what each character senses, after a build and before characters are placed.
+    fn make_states(&mut self) {
+        let characters = self.scene.characters.end();
         self.sensed.truncate(characters);
         for index in 0..characters {
             let Some(slot) = self.scene.characters.slot(index) else { continue };
@@ -203,9 +212,7 @@ impl World {
                 self.sensed[index] = state();
             }
         }
-        self.before = None;
-        self.before = Some(Box::new(WorldSnapshot::empty(self)));
-        self.rebuild_history();
+        self.grounds.clone_from(&self.sensed);
     }
 
     /// Computes what is derived from the state.

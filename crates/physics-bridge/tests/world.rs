@@ -9,7 +9,7 @@ use glam::{Quat, Vec2, Vec3};
 use physics_bridge::{
     Fixture, FixtureShape, Motion, Movable, Part, Prop, Settings, Solid, Terrain, World, WorldError,
 };
-use policy_core::{CharacterState, Heading, JointTargets};
+use policy_core::{CharacterState, FOOT_LOOKAHEAD_SECS, Heading, JointTargets};
 
 #[test]
 fn a_character_stands_as_it_does_alone() {
@@ -279,6 +279,10 @@ fn a_world_has_the_terrain_of_its_model() {
         world.sense_into(character, &mut state).unwrap();
         let root = state.root().position;
         assert!((state.ground_height - model.height_at(root.x, root.y)).abs() < 1e-3);
+        let foot = flat.skeleton().feet()[0];
+        let comes_to = state.body(foot).position + FOOT_LOOKAHEAD_SECS * state.body(foot).linear_velocity;
+        let rise = model.height_at(comes_to.x, comes_to.y) - state.ground_height;
+        assert!((state.ground_rises[foot.index()] - rise).abs() < 1e-3, "{rise} {:?}", state.ground_rises);
         assert!((0.6..1.0).contains(&(root.z - state.ground_height)), "{root} {}", state.ground_height);
         let ball = world.motion(ball).unwrap().position;
         let below = model.height_at(ball.x, ball.y);

@@ -267,6 +267,6 @@ impl std::fmt::Debug for Character {
 
 pub(crate) fn sense_into(world: &PhysicsWorld, articulation: &Articulation, out: &mut CharacterState) {
     articulation.sense_into(&world.bodies, &world.multibody_joints, 0.0, out).expect(WHOLE);
-    let root = out.root().position;
-    out.ground_height = articulation.model().height_at(root.x, root.y);
+    let model = articulation.model();
+    out.sense_ground(model.skeleton(), |at| model.height_at(at.x, at.y));
 }

@@ -162,13 +162,14 @@ impl World {
         Ok(())
     }
 
-    /// Writes what a policy senses of a character. The ground is what is highest below its root. Allocates only when `out` was made for another skeleton.
+    /// Writes what a policy senses of a character. The ground is what is highest below the height of its root. Allocates only when `out` was made for another skeleton.
     ///
     /// # Errors
     /// When there is no such character.
     pub fn sense_into(&self, character: usize, out: &mut CharacterState) -> Result<(), WorldError> {
         sense_into(&self.world, &self.resident(character)?.articulation, out);
-        out.ground_height = self.ground_below(out.root().position);
+        let z = out.root().position.z;
+        out.sense_ground(self.model.skeleton(), |at| self.ground_below(at.extend(z)));
         Ok(())
     }
 

@@ -55,6 +55,13 @@ fn a_fixture_holds_a_prop_and_is_ground_for_a_character() {
     let mut state = CharacterState::new(world.model().skeleton());
     world.sense_into(character, &mut state).unwrap();
     assert!((state.ground_height - top(state.root().position.x)).abs() < 1e-3, "{}", state.ground_height);
+    let foot = world.model().skeleton().feet()[0];
+    let rise = top(state.body(foot).position.x) - state.ground_height;
+    assert!(
+        (state.ground_rises[foot.index()] - rise).abs() < 1e-3,
+        "a foot at rest: {:?}",
+        state.ground_rises
+    );
 
     let mut world = World::new(&humanoid());
     world.add_fixture(&Fixture::new(slab, Vec3::Z * 0.5)).unwrap();

@@ -6,7 +6,7 @@ use policy_core::contract::{
     MAX_DEPTH_M, MAX_DISTANCE_M, MAX_PUSHED_MPS, MAX_SPEED_MPS, MAX_SPIN_RADPS, Pose, Settings,
 };
 use policy_core::glam::{Vec2, Vec3};
-use policy_core::{BodyId, CharacterState, Heading};
+use policy_core::{BodyId, CharacterState, Heading, ground_lookahead_secs};
 
 const HUMANOID: &str = include_str!("../../../assets/humanoid.xml");
 const HILLS: Terrain = Terrain::Wavy { height_m: 0.35, wavelength_m: 6.0, seed: 7 };
@@ -288,6 +288,14 @@ fn hills_are_where_they_are_said_to_be() {
             let state = state(&character);
             let at = state.root().position;
             assert_eq!(state.ground_height, model.described().height_at(at.x, at.y));
+            for name in ["left_foot", "right_shin"] {
+                let leg = body(&character, name);
+                let moving = state.body(leg);
+                let ahead = ground_lookahead_secs(model.skeleton(), leg).unwrap();
+                let comes_to = moving.position + ahead * moving.linear_velocity;
+                let rise = model.described().height_at(comes_to.x, comes_to.y) - state.ground_height;
+                assert_eq!(state.ground_rises[leg.index()], rise, "{name} in {}", model.engine().title());
+            }
             let feet = ["left_foot", "right_foot"].map(|foot| state.body(body(&character, foot)).position);
             for foot in feet {
                 let above = foot.z - model.described().height_at(foot.x, foot.y);

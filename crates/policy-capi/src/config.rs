@@ -2,7 +2,9 @@
 
 use std::mem::MaybeUninit;
 
-use policy_core::{Arithmetic, BlendMode, CharacterPack, ControllerConfig, NodeId, Steering, TurnAssist};
+use policy_core::{
+    Arithmetic, BlendMode, CharacterPack, ControllerConfig, GiveWay, NodeId, Steering, TurnAssist,
+};
 
 use crate::border::{finite, id, index, present};
 use crate::error::{PsStatus, fail, guard};
@@ -67,12 +69,18 @@ pub struct PsConfig {
     pub steering_trim_limit_radians: f32,
     /// Time constant of the low-pass on the velocity, seconds; at least 0.
     pub steering_velocity_secs: f32,
+    /// Not 0: stop for a moment when something holds the character up.
+    pub give_way: i32,
+    /// Share of its speed towards the target below which it is held up, in (0, 1).
+    pub give_way_held_up_share: f32,
+    /// How long it stands then, seconds; at least 0.
+    pub give_way_stop_secs: f32,
 }
 
 impl Default for PsConfig {
     fn default() -> Self {
         let (config, turn) = (ControllerConfig::default(), TurnAssist::default());
-        let steering = Steering::default();
+        let (steering, give_way) = (Steering::default(), GiveWay::default());
         Self {
             arithmetic: match config.arithmetic {
                 Arithmetic::Reproducible => PsArithmetic::Reproducible as i32,
@@ -98,6 +106,9 @@ impl Default for PsConfig {
             steering_trim_per_second: steering.trim_per_second,
             steering_trim_limit_radians: steering.trim_limit_radians,
             steering_velocity_secs: steering.velocity_secs,
+            give_way: config.give_way.is_some().into(),
+            give_way_held_up_share: give_way.held_up_share,
+            give_way_stop_secs: give_way.stop_secs,
         }
     }
 }
@@ -131,6 +142,10 @@ impl PsConfig {
             )?,
             velocity_secs: not_negative("steering_velocity_secs", self.steering_velocity_secs)?,
         };
+        let give_way = GiveWay {
+            held_up_share: not_negative("give_way_held_up_share", self.give_way_held_up_share)?,
+            stop_secs: not_negative("give_way_stop_secs", self.give_way_stop_secs)?,
+        };
         Ok(ControllerConfig {
             arithmetic,
             cache_blends: self.cache_blends != 0,
@@ -141,6 +156,7 @@ impl PsConfig {
             handover_secs: not_negative("handover_secs", self.handover_secs)?,
             turn_assist: (self.turn_assist != 0).then_some(turn),
             steering: (self.steering != 0).then_some(steering),
+            give_way: (self.give_way != 0).then_some(give_way),
         })
     }
 }

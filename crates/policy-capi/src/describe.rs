@@ -2,7 +2,7 @@
 
 use std::mem::MaybeUninit;
 
-use policy_core::{BodyId, NodeId};
+use policy_core::{BodyId, NodeId, ground_lookahead_secs};
 
 use crate::PS_NONE;
 use crate::border::{id, index, output, present};
@@ -87,6 +87,17 @@ pub extern "C" fn ps_pack_info(
             mass_kg: actuation.map_or(0.0, |a| a.mass_kg),
         });
         Ok(())
+    })
+}
+
+/// Seconds after which the ground below a body counts for PsSensed.ground_heights: where the body then is at its present velocity.
+/// Negative for a body that senses no ground of its own, and on failure.
+#[unsafe(no_mangle)]
+pub extern "C" fn ps_pack_ground_lookahead_secs(pack: Option<&PsPack>, body: i32) -> f32 {
+    guard_or(-1.0, || {
+        let skeleton = present("a pack", pack)?.pack.skeleton();
+        let body = BodyId::new(index("body", body, skeleton.body_count())?);
+        Ok(ground_lookahead_secs(skeleton, body).unwrap_or(-1.0))
     })
 }
 

@@ -37,6 +37,9 @@ pub struct PsSensed {
     pub joint_count: usize,
     /// Height of the ground below the root, metres.
     pub ground_height: f32,
+    /// For each body, height of the ground where it comes to, metres: see ps_pack_ground_lookahead_secs. Those of other bodies are
+    /// not read. NULL for level ground. As many entries as `bodies`.
+    pub ground_heights: *const f32,
 }
 
 impl PsSensed {
@@ -64,7 +67,23 @@ impl PsSensed {
             };
         }
         out.joint_velocities.copy_from_slice(velocities);
-        out.ground_height = self.ground_height;
+        if self.ground_heights.is_null() {
+            out.sense_level_ground(self.ground_height);
+            return Ok(());
+        }
+        // SAFETY: the caller's promise is passed on.
+        let heights =
+            unsafe { input("heights of the ground", self.ground_heights, self.body_count, bodies.len()) }?;
+        let mut bad = None;
+        out.set_ground(skeleton, self.ground_height, |body, _| {
+            let height = heights[body.index()];
+            bad = bad.or((!height.is_finite()).then_some(body));
+            height
+        });
+        // The check names it.
+        if let Some(body) = bad {
+            out.ground_rises[body.index()] = f32::NAN;
+        }
         Ok(())
     }
 }
@@ -76,7 +95,7 @@ pub(crate) fn check(skeleton: &Skeleton, state: &CharacterState) -> Result<(), P
         let text = format_args!("expected a finite ground_height, found {found}");
         return Err(fail(PsStatus::BadNumber, text));
     }
-    for (body, entry) in state.bodies.iter().zip(skeleton.bodies()) {
+    for ((body, rise), entry) in state.bodies.iter().zip(&state.ground_rises).zip(skeleton.bodies()) {
         let name = &entry.name;
         let vectors = [
             ("position", body.position),
@@ -85,6 +104,10 @@ pub(crate) fn check(skeleton: &Skeleton, state: &CharacterState) -> Result<(), P
         ];
         if let Some((field, found)) = vectors.iter().find(|(_, v)| !v.is_finite()) {
             let text = format_args!("expected a finite {field} of body {name:?}, found {found}");
+            return Err(fail(PsStatus::BadNumber, text));
+        }
+        if !rise.is_finite() {
+            let text = format_args!("expected a finite entry of ground_heights for body {name:?}");
             return Err(fail(PsStatus::BadNumber, text));
         }
         let length = body.rotation.length();

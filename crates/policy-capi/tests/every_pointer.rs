@@ -99,6 +99,7 @@ fn every_function_refuses_every_null_pointer() {
     called.found_null("ps_pack_info", ps_pack_info(None, Some(&mut MaybeUninit::uninit())));
     called.found_null("ps_pack_info", ps_pack_info(Some(&pack), None));
     called.found_null("ps_pack_parent", ps_pack_parent(None, 0));
+    called.found_null("ps_pack_ground_lookahead_secs", ps_pack_ground_lookahead_secs(None, 0) < 0.0);
     called.found_null("ps_pack_joint", ps_pack_joint(None, 0, Some(&mut MaybeUninit::uninit())));
     called.found_null("ps_pack_joint", ps_pack_joint(Some(&pack), 0, None));
     called.found_null("ps_pack_node", ps_pack_node(None, 0, Some(&mut MaybeUninit::uninit())));
@@ -201,6 +202,16 @@ fn an_action_and_a_ground_that_are_not_finite() {
     };
     assert_eq!(status, PsStatus::BadNumber);
     assert!(last_error().contains("ground_height"), "{}", last_error());
+    let mut heights = [0.0; 15];
+    heights[14] = f32::INFINITY;
+    let sensed = PsSensed { ground_heights: heights.as_ptr(), ..body.sensed() };
+    // SAFETY: as many entries as said.
+    let status = unsafe {
+        let out = targets.as_mut_ptr();
+        ps_controller_tick(Some(&mut made), Some(&sensed), Some(&walking()), DT, out, JOINTS)
+    };
+    assert_eq!(status, PsStatus::BadNumber);
+    assert!(last_error().contains("ground_heights for body \"left_foot\""), "{}", last_error());
     body.velocities[4] = f32::NEG_INFINITY;
     assert_eq!(tick(&mut made, &body, &walking(), &mut targets), PsStatus::BadNumber);
     assert_eq!(tick(&mut made, &Body::standing(), &walking(), &mut targets), PsStatus::Ok);

@@ -12,6 +12,8 @@ use crate::command::Command;
 use crate::controller_state::{ControllerState, StateError};
 use crate::evaluator::{BlendEvaluator, BlendMode};
 use crate::fall::{Heights, step_heights};
+use crate::footing::{next_unevenness, on_ground};
+use crate::give_way::{GiveWay, GiveWayState};
 use crate::ids::{NodeId, PolicyId, SkillId};
 use crate::kernel::Arithmetic;
 use crate::observation::{observe_into, target_input};
@@ -64,6 +66,10 @@ pub struct ControllerConfig {
     pub turn_assist: Option<TurnAssist>,
     /// Hold the course and lead into turns, the default; `None` to give the policies the target as it is.
     pub steering: Option<Steering>,
+    /// Stop for a moment when something holds the character up, the default; `None` to walk on against it.
+    pub give_way: Option<GiveWay>,
+    /// Blend gaits with their variants for rough ground where the ground is uneven, the default; where the pack has none, nothing changes.
+    pub footing: bool,
 }
 
 impl Default for ControllerConfig {
@@ -78,6 +84,8 @@ impl Default for ControllerConfig {
             handover_secs: 0.0,
             turn_assist: Some(TurnAssist::default()),
             steering: Some(Steering::default()),
+            give_way: Some(GiveWay::default()),
+            footing: true,
         }
     }
 }
@@ -259,11 +267,16 @@ impl Controller {
             return false;
         }
         let heights = Heights::of(self.pack.skeleton(), state);
+        self.state.unevenness = match self.config.footing {
+            true => next_unevenness(self.state.unevenness, state, dt),
+            false => 0.0,
+        };
         self.run_skill(state, heights, dt);
         self.detect_fall(state, dt);
         self.request_skill(command.skill, state, heights, dt);
         let assist = self.config.turn_assist.filter(|_| self.state.report.pending_skill.is_none());
         let command = assist.map_or(*command, |a| a.adjusted(self.pack.graph(), state, command));
+        let command = self.giving_way(state, &command, dt);
         self.travel(&command, heights, dt);
         self.choose_blend(state, &command);
         self.observe(state, &command, dt);
@@ -336,10 +349,27 @@ impl Controller {
             (Some(progress), _) => skills::way_out(&self.pack, progress, state, report.blend)
                 .unwrap_or_else(|| Blend::single(self.pack.skills()[progress.skill.index()].policy)),
             (None, Some(blend)) => blend,
-            (None, None) => self.state.fall.acting_position(report.position).blend(),
+            (None, None) => {
+                let blend = self.state.fall.acting_position(report.position).blend();
+                on_ground(self.pack.graph(), blend, self.state.unevenness)
+            }
         };
         if let (BlendMode::Switch, Some(policy)) = (self.config.blend_mode, report.blend.strongest()) {
             report.blend = Blend::single(policy);
+        }
+    }
+
+    /// The command, or to stand for a moment. Skills and falls are none of its business.
+    fn giving_way(&mut self, state: &CharacterState, command: &Command, dt: f32) -> Command {
+        let report = &self.state.report;
+        let acts = report.skill.is_none() && report.pending_skill.is_none() && !report.fallen;
+        let memory = &mut self.state.give_way;
+        match self.config.give_way.filter(|_| acts) {
+            Some(give_way) => give_way.adjusted(memory, self.pack.graph(), state, command, dt),
+            None => {
+                *memory = GiveWayState::default();
+                *command
+            }
         }
     }
 

@@ -8,6 +8,7 @@ use alloc::vec::Vec;
 use crate::evaluator::BlendRest;
 use crate::fall::FallDetector;
 use crate::features::FrameHistory;
+use crate::give_way::GiveWayState;
 use crate::ids::SkillId;
 use crate::pack::CharacterPack;
 use crate::path::GraphPosition;
@@ -34,6 +35,10 @@ pub struct ControllerState {
     pub(crate) pending_secs: f32,
     /// What steering remembers.
     pub(crate) steering: SteeringState,
+    /// What giving way remembers.
+    pub(crate) give_way: GiveWayState,
+    /// How uneven the ground is, in [0, 1].
+    pub(crate) unevenness: f32,
 }
 
 /// Why a state can't be restored. The controller is unchanged.
@@ -82,6 +87,8 @@ impl ControllerState {
             handover_secs: 0.0,
             pending_secs: 0.0,
             steering: SteeringState::default(),
+            give_way: GiveWayState::default(),
+            unevenness: 0.0,
         }
     }
 
@@ -107,6 +114,8 @@ impl ControllerState {
         self.handover_secs = other.handover_secs;
         self.pending_secs = other.pending_secs;
         self.steering = other.steering;
+        self.give_way = other.give_way;
+        self.unevenness = other.unevenness;
     }
 
     /// Makes it the state of a new controller again.
@@ -121,6 +130,8 @@ impl ControllerState {
         self.handover_secs = 0.0;
         self.pending_secs = 0.0;
         self.steering = SteeringState::default();
+        self.give_way = GiveWayState::default();
+        self.unevenness = 0.0;
     }
 
     pub(crate) fn same_size(&self, other: &Self) -> bool {
@@ -158,7 +169,9 @@ impl ControllerState {
         let mut numbers = self.targets.iter().chain(&self.handover_from).chain(self.history.parts().0);
         let times = [self.fall.low_seconds, self.fall.rising_seconds, self.handover_secs, self.pending_secs];
         let steering = [self.steering.velocity.x, self.steering.velocity.y, self.steering.trim];
-        let finite = numbers.all(|n| n.is_finite()) && times.iter().chain(&steering).all(|t| t.is_finite());
+        let give_way = [self.give_way.speed, self.give_way.pace, self.give_way.stop_secs, self.unevenness];
+        let mut others = times.iter().chain(&steering).chain(&give_way);
+        let finite = numbers.all(|n| n.is_finite()) && others.all(|n| n.is_finite());
         field("numbers", "finite numbers", finite)?;
         let progress = r.skill.map_or([0.0; 2], |s| [s.seconds, s.held_seconds]);
         let counted = progress.iter().all(|n| n.is_finite()) && r.target.iter().all(|n| n.is_finite());

@@ -175,6 +175,9 @@ pub struct PolicyEntry {
     /// See [`Node::strafes`](crate::training::Node::strafes).
     #[serde(default, skip_serializing_if = "is_false")]
     pub strafes: bool,
+    /// Name of its variant for rough ground; see [`Node::rough_ground`](crate::training::Node::rough_ground).
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub rough_ground: Option<String>,
     /// Where the policy comes from: recipe, samples, seed.
     #[serde(default)]
     pub origin: String,

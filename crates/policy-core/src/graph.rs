@@ -25,6 +25,8 @@ pub struct Node {
     pub speed_mps: Option<f32>,
     /// True for a policy that faces [`Command::facing`](crate::Command::facing) and moves in any direction.
     pub strafes: bool,
+    /// Variant of the policy that it is blended with on uneven ground.
+    pub rough_ground: Option<NodeId>,
 }
 
 /// A straight line between the parameters of two policies that is itself a good policy.

@@ -1,7 +1,7 @@
 //! What a policy sees: the body and the target, all in the heading frame of the root.
 //!
-//! Order for B bodies: height of the root above the ground (1); positions of the other bodies relative to the root
-//! (3 B - 3); x and z axes of all bodies (6 B); linear velocities (3 B); angular velocities (3 B). The target
+//! Order for B bodies: height of the root above the ground (1); positions of the other bodies relative to the root, those of
+//! the legs lowered by the rise of the ground that they come to (3 B - 3); x and z axes of all bodies (6 B); linear velocities (3 B); angular velocities (3 B). The target
 //! follows as the last two policy inputs, after normalisation.
 
 use glam::{Vec2, Vec3};
@@ -40,8 +40,9 @@ pub fn observe_into(skeleton: &Skeleton, state: &CharacterState, out: &mut [f32]
     let mut cursor = Cursor { out, at: 0 };
     cursor.push(state.root_height());
     // A skeleton has a body, the state fits it, and `observation_len` counts what is pushed.
-    for body in &state.bodies[1..] {
-        cursor.push3(heading.heading_from_world(body.position - root.position));
+    for (body, rise) in state.bodies[1..].iter().zip(&state.ground_rises[1..]) {
+        let place = heading.heading_from_world(body.position - root.position);
+        cursor.push3(place.with_z(place.z - rise));
     }
     for body in &state.bodies {
         let (x, z) = axes_xz(body.rotation);

@@ -58,12 +58,20 @@ impl CharacterPack {
         let skeleton = skeleton(&manifest.skeleton)?;
         check_networks(&manifest, &tensors, &skeleton)?;
         let names: Vec<&str> = manifest.policies.iter().map(|p| p.name.as_str()).collect();
-        let nodes = manifest.policies.iter().map(|p| Node {
-            name: p.name.clone(),
-            fall_height: p.fall_height,
-            speed_mps: p.speed_mps,
-            strafes: p.strafes,
+        let nodes = manifest.policies.iter().map(|p| {
+            let field = || alloc::format!("policy \"{}\"", p.name);
+            Ok(Node {
+                name: p.name.clone(),
+                fall_height: p.fall_height,
+                speed_mps: p.speed_mps,
+                strafes: p.strafes,
+                rough_ground: match &p.rough_ground {
+                    None => None,
+                    Some(name) => Some(find_node(field(), name, &names)?),
+                },
+            })
         });
+        let nodes = nodes.collect::<Result<Vec<_>, PackError>>()?;
         let edges = manifest.edges.iter().map(|e| edge(e, &names)).collect::<Result<Vec<_>, _>>()?;
         let paths = manifest.paths.iter().map(|path| {
             let field = || alloc::format!("path \"{}\"", path.name);
@@ -79,7 +87,7 @@ impl CharacterPack {
             Some(name) => Some(SkillId::new(find("skill", "recovery", name, &mut skill_names)?)),
         };
         let action = action_scaling(&manifest, &skeleton)?;
-        let graph = PolicyGraph::from_parts(nodes.collect(), &edges, paths, &tensors.policies)?;
+        let graph = PolicyGraph::from_parts(nodes, &edges, paths, &tensors.policies)?;
         check_reachable(&graph, &skills)?;
         Ok(Self { manifest, tensors, skeleton: Arc::new(skeleton), graph, skills, recovery, action })
     }

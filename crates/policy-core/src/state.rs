@@ -44,6 +44,10 @@ pub struct CharacterState {
     pub joint_velocities: Vec<f32>,
     /// Height of the ground below the root, metres.
     pub ground_height: f32,
+    /// For each body, how much higher the ground that it comes to is than that below the root, metres, within
+    /// [`MAX_RISE_METRES`](crate::MAX_RISE_METRES). Zero on level ground and where nothing is known;
+    /// [`CharacterState::sense_ground`] sets those of the legs.
+    pub ground_rises: Vec<f32>,
 }
 
 impl CharacterState {
@@ -54,6 +58,7 @@ impl CharacterState {
             bodies: alloc::vec![BodyState::default(); skeleton.body_count()],
             joint_velocities: alloc::vec![0.0; skeleton.joint_count()],
             ground_height: 0.0,
+            ground_rises: alloc::vec![0.0; skeleton.body_count()],
         }
     }
 
@@ -105,7 +110,9 @@ impl CharacterState {
     /// True when it has the bodies and hinges of `skeleton`.
     #[must_use]
     pub fn fits(&self, skeleton: &Skeleton) -> bool {
-        self.bodies.len() == skeleton.body_count() && self.joint_velocities.len() == skeleton.joint_count()
+        self.bodies.len() == skeleton.body_count()
+            && self.ground_rises.len() == self.bodies.len()
+            && self.joint_velocities.len() == skeleton.joint_count()
     }
 
     /// Copies the numbers of `other`. Allocates only when the sizes differ.
@@ -113,12 +120,23 @@ impl CharacterState {
         self.bodies.clone_from(&other.bodies);
         self.joint_velocities.clone_from(&other.joint_velocities);
         self.ground_height = other.ground_height;
+        self.ground_rises.clone_from(&other.ground_rises);
+    }
+
+    /// Copies what `other`, of the same skeleton, senses of the ground. Does not allocate.
+    ///
+    /// # Panics
+    /// When the other state has more or fewer bodies.
+    pub fn copy_ground(&mut self, other: &Self) {
+        self.ground_height = other.ground_height;
+        self.ground_rises.copy_from_slice(&other.ground_rises);
     }
 
     /// True when every number is finite.
     #[must_use]
     pub fn is_finite(&self) -> bool {
         self.ground_height.is_finite()
+            && self.ground_rises.iter().all(|rise| rise.is_finite())
             && self.joint_velocities.iter().all(|v| v.is_finite())
             && self.bodies.iter().all(|b| {
                 b.position.is_finite()

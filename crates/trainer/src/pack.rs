@@ -180,6 +180,7 @@ fn policies(plan: &PackPlan, trained: &[TrainedSkill]) -> Result<(Vec<Mlp>, Vec<
             fall_height: planned.fall_height,
             speed_mps: planned.speed_mps,
             strafes: planned.strafes,
+            rough_ground: planned.rough_ground.clone(),
             origin: skill.origin.clone(),
         });
     }

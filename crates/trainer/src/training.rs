@@ -156,10 +156,11 @@ impl Training {
         }
         let randomisation = &phase.environment.randomisation;
         let models_of = |config: &EnvironmentConfig| {
-            let RandomisationConfig { terrain_metres, step_metres, dynamics, .. } = config.randomisation;
-            [terrain_metres, step_metres, dynamics]
+            let RandomisationConfig { terrain_metres, step_metres, slope_metres, dynamics, .. } =
+                config.randomisation;
+            [terrain_metres, step_metres, slope_metres, dynamics]
         };
-        if before.map_or([0.0; 3], models_of) != models_of(&phase.environment) {
+        if before.map_or([0.0; 4], models_of) != models_of(&phase.environment) {
             let models = randomisation.models(&self.model)?;
             let demonstrations = self.discriminators.demonstrations();
             let context = self.shared.context(&phase.environment, &demonstrations);

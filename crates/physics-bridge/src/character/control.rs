@@ -35,6 +35,7 @@ impl Character {
     /// Updates [`Character::sensed`].
     pub(crate) fn sense(&mut self) {
         let model = &self.model;
-        sense_into(&self.data, model.layout(), |x, y| model.height_at(x, y), &mut self.sensed);
+        sense_into(&self.data, model.layout(), &mut self.sensed);
+        self.sensed.sense_ground(model.skeleton(), |at| model.height_at(at.x, at.y));
     }
 }

@@ -10,12 +10,13 @@ use crate::kinematics::{poses_into, sense_into, velocity_at, velocity_reference}
 
 impl Character {
     /// Writes what a policy senses: motion of the body frames in world axes, joint velocities, and the
-    /// height of the ground below the root. Allocates only when `out` was made for another skeleton.
+    /// ground below the root and ahead of the legs. Allocates only when `out` was made for another skeleton.
     pub fn sense_into(&self, out: &mut CharacterState) {
         if !out.fits(self.model.skeleton()) {
             *out = CharacterState::new(self.model.skeleton());
         }
-        sense_into(&self.data, self.model.layout(), |x, y| self.model.height_at(x, y), out);
+        sense_into(&self.data, self.model.layout(), out);
+        out.sense_ground(self.model.skeleton(), |at| self.model.height_at(at.x, at.y));
     }
 
     /// Writes where the bodies are. Allocates only when `out` was made for another skeleton.

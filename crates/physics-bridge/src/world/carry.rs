@@ -31,7 +31,7 @@ impl World {
             culprits: Vec::new(),
             waiting: Vec::new(),
             standing: vec![Standing::default(); characters].into(),
-            ground_heights: vec![0.0; characters].into(),
+            grounds: Vec::new(),
             sensed: self.sensed.clone(),
             is_touched: true,
             before: None,
@@ -44,6 +44,7 @@ impl World {
         for index in 0..new.scene.props.end() {
             new.carry_prop(self, index);
         }
+        new.make_states();
         new.place(placements);
         new.history = self.history.take();
         *self = new;

@@ -22,8 +22,8 @@ impl World {
         Ok(self.scene.characters.at(self.scene.characters.index_of(character)?))
     }
 
-    /// Writes what a policy senses, as [`Character::sense_into`](crate::Character::sense_into). The ground is what is
-    /// below the root: the terrain, or a fixture on it. Allocates only when `out` was made for another skeleton.
+    /// Writes what a policy senses, as [`Character::sense_into`](crate::Character::sense_into). The ground is the terrain, or
+    /// what is highest of the fixtures on it below the height of the root. Allocates only when `out` was made for another skeleton.
     ///
     /// # Errors
     /// When the handle is stale.
@@ -33,8 +33,8 @@ impl World {
         if !out.fits(skeleton) {
             *out = CharacterState::new(skeleton);
         }
-        let ground = self.ground_heights[index];
-        sense_into(&self.data, &self.places.character(index).layout, |_, _| ground, out);
+        sense_into(&self.data, &self.places.character(index).layout, out);
+        out.copy_ground(&self.grounds[index]);
         Ok(())
     }
 
@@ -96,9 +96,9 @@ impl World {
         for owner in owners {
             let (character, controller, command) = steering(owner);
             let Ok(index) = self.scene.characters.index_of(character) else { continue };
-            let ground = self.ground_heights[index];
             let sensed = &mut self.sensed[index];
-            sense_into(&self.data, &self.places.character(index).layout, |_, _| ground, sensed);
+            sense_into(&self.data, &self.places.character(index).layout, sensed);
+            sensed.copy_ground(&self.grounds[index]);
             let targets = controller.tick(sensed, &command, dt_secs);
             self.write_targets(index, targets);
         }

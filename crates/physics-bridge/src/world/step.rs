@@ -12,6 +12,7 @@ use super::contact;
 use super::ray::height_below;
 use super::recover::Standing;
 use crate::description::body_poses::rotation;
+use crate::kinematics::sense_into;
 
 /// How often a tick is begun anew before it is left out.
 const ROUNDS: u32 = 12;
@@ -158,12 +159,15 @@ impl World {
         self.note_ground();
     }
 
-    /// Notes how high the ground is below each character.
+    /// Notes how high the ground is below each character and ahead of its legs. A ray begins at the height of the root.
     pub(super) fn note_ground(&mut self) {
-        for (index, _) in self.scene.characters.present() {
-            let root = self.places.character(index).layout.body_ids[0];
-            let place = self.data.xpos()[root].map(|number| number as f32);
-            self.ground_heights[index] = height_below(&mut self.data, &self.places, &self.ground, place);
+        for (index, model) in self.scene.characters.present() {
+            let state = &mut self.grounds[index];
+            sense_into(&self.data, &self.places.character(index).layout, state);
+            let z = state.root().position.z;
+            state.sense_ground(model.skeleton(), |at| {
+                height_below(&mut self.data, &self.places, &self.ground, [at.x, at.y, z])
+            });
         }
     }
 

@@ -106,6 +106,7 @@ fn policy_entry(name: &str, sizes: &[usize]) -> PolicyEntry {
         fall_height: None,
         speed_mps: None,
         strafes: false,
+        rough_ground: None,
         origin: "made up".into(),
     }
 }

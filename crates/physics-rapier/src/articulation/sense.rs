@@ -8,8 +8,9 @@ use super::{Articulation, Removed};
 
 impl Articulation {
     /// Writes what a policy senses: motion of the body frames in world axes, and joint velocities. `ground_height` is
-    /// that of the ground below the root, metres; the game casts a ray or knows its terrain. Allocates only when
-    /// `out` was made for another skeleton.
+    /// that of the ground below the root, metres; the game casts a ray or knows its terrain. Where the ground is uneven,
+    /// [`CharacterState::sense_ground`] afterwards says what rises ahead of the legs. Allocates only when `out` was made
+    /// for another skeleton.
     ///
     /// Rapier's own body velocities are those at the start of its last substep, so they are computed here from the
     /// generalised ones.
@@ -59,7 +60,7 @@ impl Articulation {
         for (out, hinge) in out.joint_velocities.iter_mut().zip(&self.hinges) {
             *out = multibody.generalized_velocity()[hinge.dof];
         }
-        out.ground_height = ground_height;
+        out.sense_level_ground(ground_height);
         Ok(())
     }
 

@@ -69,6 +69,7 @@ impl Body {
             joint_velocities: self.velocities.as_ptr(),
             joint_count: self.velocities.len(),
             ground_height: 0.0,
+            ground_heights: std::ptr::null(),
         }
     }
 }

@@ -67,6 +67,7 @@ pub fn manifest() -> Manifest {
         fall_height: (!["crawl", "roll"].contains(&name)).then_some(0.5),
         speed_mps: None,
         strafes: false,
+        rough_ground: None,
         origin: "made up".into(),
     };
     let edge = |a: &str, b: &str| EdgeEntry {

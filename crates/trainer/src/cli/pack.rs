@@ -61,13 +61,15 @@ pub(crate) fn run(
     let joint = plan.joint.as_ref().map(|run| newest(run)).transpose()?.flatten();
     let together = |skill: &str| joint.as_ref().filter(|(loaded, _)| TrainedSkill::is_in(skill, loaded));
     let mut trained = Vec::new();
-    for PlannedPolicy { name, from, .. } in &plan.policies {
-        let own = match (from, together(name)) {
-            (None, Some((loaded, path))) => Some(TrainedSkill::from_checkpoint(name, loaded, path)?),
-            _ => newest(from.as_ref().unwrap_or(name))?
-                .map(|(loaded, path)| TrainedSkill::from_checkpoint(name, &loaded, &path))
+    for PlannedPolicy { name, from, skill, .. } in &plan.policies {
+        let skill = skill.as_ref().unwrap_or(name);
+        let of_run = match (from, together(skill)) {
+            (None, Some((loaded, path))) => Some(TrainedSkill::from_checkpoint(skill, loaded, path)?),
+            _ => newest(from.as_ref().unwrap_or(skill))?
+                .map(|(loaded, path)| TrainedSkill::from_checkpoint(skill, &loaded, &path))
                 .transpose()?,
         };
+        let own = of_run.map(|trained| TrainedSkill { skill: name.clone(), ..trained });
         let known = own.is_some();
         trained.extend(own);
         ensure!(

@@ -19,8 +19,9 @@ const LONG_PUSH_FORCE: f32 = 0.4;
 /// A long push comes from at most this far off straight ahead, radians.
 const LONG_PUSH_ASIDE: f32 = 0.8;
 
-/// From crest to crest of the waves, metres.
+/// From crest to crest of the waves and of the slopes, metres.
 const WAVELENGTH_METRES: f32 = 6.0;
+const SLOPE_WAVELENGTH_METRES: f32 = 20.0;
 
 /// Waves that differ in the places of their hills.
 const WAVES: u32 = 3;
@@ -33,6 +34,9 @@ const STEP_COUNT: u32 = 5;
 /// Changes of strength and friction in units of [`RandomisationConfig::dynamics`]. Half of the bodies stay as they are.
 const DYNAMICS: [[f32; 2]; 6] = [[0.0, 0.0], [0.0, 0.0], [-1.0, 0.0], [0.0, 0.0], [0.5, -1.5], [-0.5, 1.0]];
 
+/// Which of these is stepped coarsely where [`RandomisationConfig::long_steps`] says so.
+const LONG_STEPS_AT: usize = 1;
+
 /// Ground, pushes and differences of the body.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, default)]
@@ -43,8 +47,13 @@ pub struct RandomisationConfig {
     /// Height of a step where the ground has waves and steps, metres. Above zero one environment of six has steps of half this
     /// height, one of this height, three waves and one is flat. Zero for steps of 0.3 of `terrain_metres`.
     pub step_metres: f32,
+    /// Height of hills of 20 m from crest to crest in place of one of the waves, metres; 2 for slopes of 7 degrees in the root mean
+    /// square. Zero for three waves.
+    pub slope_metres: f32,
     /// Largest relative change of the motors' strength; friction changes by up to 1.5 times as much.
     pub dynamics: f32,
+    /// True for physics steps of twice the length in one environment of six, where the body differs too.
+    pub long_steps: bool,
     /// Share of episodes in which every action arrives one tick late.
     pub latency_share: f32,
     /// Mean seconds between pushes of 0.2 s; zero for none.
@@ -86,8 +95,12 @@ impl RandomisationConfig {
                 grounds.push(model.with_terrain(steps)?);
             }
             for seed in 1..=WAVES {
-                let height_m = self.terrain_metres;
-                let waves = Terrain::Wavy { height_m, wavelength_m: WAVELENGTH_METRES, seed };
+                let (height_m, wavelength_m) = if seed == WAVES && self.slope_metres > 0.0 {
+                    (self.slope_metres, SLOPE_WAVELENGTH_METRES)
+                } else {
+                    (self.terrain_metres, WAVELENGTH_METRES)
+                };
+                let waves = Terrain::Wavy { height_m, wavelength_m, seed };
                 grounds.push(model.with_terrain(waves)?);
             }
         }
@@ -95,9 +108,12 @@ impl RandomisationConfig {
             return Ok(grounds);
         }
         let mut models = Vec::new();
-        for [strength, friction] in DYNAMICS.map(|change| change.map(|units| 1.0 + self.dynamics * units)) {
+        let bodies = DYNAMICS.map(|change| change.map(|units| 1.0 + self.dynamics * units));
+        for (body, [strength, friction]) in bodies.into_iter().enumerate() {
             for ground in &grounds {
-                models.push(ground.with_settings(Settings { strength, friction, ..Settings::default() })?);
+                let model = ground.with_settings(Settings { strength, friction, ..Settings::default() })?;
+                let long = self.long_steps && body == LONG_STEPS_AT;
+                models.push(if long { model.with_time_step(2.0)? } else { model });
             }
         }
         Ok(models)

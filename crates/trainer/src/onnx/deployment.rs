@@ -233,7 +233,13 @@ impl ObservationLayout {
         // A skeleton has a body at least.
         let described = [
             ("root_height", 1, "height of the root above the ground, m".to_owned()),
-            ("positions", 3 * count - 3, "of the bodies but the root, relative to the root, m".to_owned()),
+            (
+                "positions",
+                3 * count - 3,
+                "of the bodies but the root, relative to the root, those of feet and shins lowered by the rise of the ground that \
+                 they come to within 0.1 s and 0.3 s, m"
+                    .to_owned(),
+            ),
             ("axes", 6 * count, "x axis, then z axis of each body".to_owned()),
             ("linear_velocities", 3 * count, "of the origin of each body's frame, m/s".to_owned()),
             ("angular_velocities", 3 * count, "of each body, rad/s".to_owned()),

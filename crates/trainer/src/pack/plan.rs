@@ -58,6 +58,12 @@ pub struct PlannedPolicy {
     /// True for a policy that faces one way and moves another.
     #[serde(default)]
     pub strafes: bool,
+    /// Skill of the run that the policy is of, where that is not its name.
+    #[serde(default)]
+    pub skill: Option<String>,
+    /// Name of its variant for rough ground.
+    #[serde(default)]
+    pub rough_ground: Option<String>,
 }
 
 impl PackPlan {
@@ -77,6 +83,9 @@ impl PackPlan {
     #[must_use]
     pub fn only(mut self, trained: impl Fn(&str) -> bool) -> Self {
         self.policies.retain(|p| trained(&p.name));
+        for policy in &mut self.policies {
+            policy.rough_ground = policy.rough_ground.take().filter(|variant| trained(variant));
+        }
         self.edges.retain(|e| e.nodes.iter().all(|n| trained(n)));
         let edges = self.edges.clone();
         let joined = |a: &str, b: &str| {

@@ -52,6 +52,7 @@ impl Rollout {
             assist_rise: false,
             turn_assist: None,
             steering: None,
+            give_way: None,
             start,
             ..ControllerConfig::default()
         };

@@ -124,6 +124,7 @@ impl Workspace {
             assist_rise: false,
             turn_assist: None,
             steering: None,
+            give_way: None,
             ..ControllerConfig::default()
         };
         let controller = Controller::with_config(pack, config);

@@ -69,6 +69,7 @@ const RANGES: &[(&str, f64, f64)] = &[
     ("environment.reset.hand_over.share", 0.0, 1.0),
     ("environment.randomisation.terrain_metres", 0.0, 0.5),
     ("environment.randomisation.step_metres", 0.0, 0.5),
+    ("environment.randomisation.slope_metres", 0.0, 5.0),
     ("environment.randomisation.dynamics", 0.0, 0.5),
     ("environment.randomisation.latency_share", 0.0, 1.0),
     ("environment.randomisation.long_push_share", 0.0, 1.0),

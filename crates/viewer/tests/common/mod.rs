@@ -133,6 +133,7 @@ pub fn quadruped() -> CharacterPack {
         fall_height: Some(0.05),
         speed_mps: Some(speed_mps),
         strafes: false,
+        rough_ground: None,
         origin: "made up".into(),
     };
     let manifest = Manifest {

@@ -48,7 +48,15 @@ pub(super) fn sense(
             }
         }
         match own.articulation.sense_into(set, joints, ground, &mut controller.sensed) {
-            Ok(()) => axes::turn_state(&mut controller.sensed),
+            Ok(()) => {
+                axes::turn_state(&mut controller.sensed);
+                let (level, from) = (ground, controller.sensed.root().position.z);
+                let below = |at: Vec2| {
+                    let ray = Ray::new(axes::to_bevy(at.extend(from)), Vec3::NEG_Y);
+                    query.cast_ray(&ray, GROUND_RANGE, true).map_or(level, |(_, distance)| from - distance)
+                };
+                controller.sensed.set_ground(own.articulation.model().skeleton(), level, |_, at| below(at));
+            }
             Err(removed) => {
                 own.fault = Some(Fault::Stand);
                 errors.write(CharacterProblem::Removed { message: removed.to_string() }.of(entity));

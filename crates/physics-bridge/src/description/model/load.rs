@@ -126,6 +126,15 @@ impl Model {
         Ok(Self { shared: Arc::clone(shared), physics, settings })
     }
 
+    /// The same character, ground and settings with physics steps that are longer by a factor. Compiles again.
+    ///
+    /// # Errors
+    /// When a control tick is no whole number of such steps.
+    pub fn with_time_step(&self, factor: f64) -> Result<Self, ModelError> {
+        let mjcf = scaled(self.mjcf(), "timestep", factor).into();
+        Self::compile(Source { mjcf, ..self.shared.source.clone() })?.with_settings(self.settings)
+    }
+
     /// Compiles and checks.
     pub(crate) fn compile(source: Source) -> Result<Self, ModelError> {
         let base = Arc::new(mjcf::compile(&source.mjcf, &source.terrain)?);
@@ -220,4 +229,32 @@ fn needed_memory(physics: &MjModel) -> i64 {
     let geoms = bodies.len();
     let pairs: usize = (0..geoms).map(|a| (a + 1..geoms).filter(|&b| touch(a, b)).count()).sum();
     (1 << 18) + 64 * (square(physics.nbody()) + square(physics.nv())) + (12 << 10) * pairs as i64
+}
+
+/// The text with every number of an attribute multiplied by a factor.
+fn scaled(mjcf: &str, attribute: &str, factor: f64) -> String {
+    let opening = format!(" {attribute}=\"");
+    let mut parts = mjcf.split(opening.as_str());
+    let mut text = parts.next().unwrap_or_default().to_owned();
+    for part in parts {
+        let (value, rest) = part.split_once('"').unwrap_or((part, ""));
+        let value = value.trim().parse::<f64>().map_or(value.to_owned(), |v| (v * factor).to_string());
+        text.extend([opening.as_str(), value.as_str(), "\"", rest]);
+    }
+    text
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn attributes_are_scaled_and_the_rest_of_the_text_stays() {
+        let text = "<a density=\"2\"/><b name=\"density\" density=\"0.5\" size=\"3\"/>";
+        assert_eq!(
+            scaled(text, "density", 3.0),
+            "<a density=\"6\"/><b name=\"density\" density=\"1.5\" size=\"3\"/>"
+        );
+        assert_eq!(scaled(text, "mass", 3.0), text);
+    }
 }
