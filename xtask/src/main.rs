@@ -55,6 +55,10 @@ enum Verb {
     ///
     /// Installs the pinned cargo-deny in third_party/tools first; this takes about two minutes, once.
     Deny,
+    /// Check what a release needs: packages, oldest dependencies, features that the tests leave off.
+    ///
+    /// Compiles Rapier twice and Bevy once more; this takes about half an hour on two cores.
+    PublishCheck(PublishArgs),
     /// Build the C interface and install header, libraries and pkg-config file.
     Capi(capi::CapiArgs),
     /// Measure, and print a table or one JSON object.
@@ -113,6 +117,14 @@ struct TestArgs {
     strict: bool,
 }
 
+/// Arguments of `cargo xtask publish-check`.
+#[derive(Debug, Args)]
+struct PublishArgs {
+    /// Leave out the step that compiles Bevy.
+    #[arg(long)]
+    no_bevy: bool,
+}
+
 fn main() -> ExitCode {
     match dispatch(Cli::parse().verb) {
         Ok(code) => code,
@@ -138,6 +150,11 @@ fn dispatch(verb: Verb) -> Result<ExitCode> {
         Verb::Imports => checks::imports::check(&workspace)?,
         Verb::Words => checks::words::check(&workspace)?,
         Verb::Deny => return Ok(checks::run(&workspace, checks::DENY, false)),
+        Verb::PublishCheck(arguments) => {
+            setup::prepare(&workspace, Purpose::Tests, false)?;
+            let steps = if arguments.no_bevy { checks::PUBLISH } else { checks::PUBLISH_ALL };
+            return Ok(checks::run(&workspace, steps, false));
+        }
         Verb::Capi(arguments) if arguments.check => {
             setup::prepare(&workspace, Purpose::Tests, false)?;
             return Ok(checks::run(&workspace, checks::C_INTERFACE, false));
