@@ -10,6 +10,7 @@ mod determinism;
 mod fuzz;
 mod hostile;
 mod onnx;
+mod rapier_patch;
 mod setup;
 mod web;
 mod workspace;
@@ -78,6 +79,10 @@ enum Verb {
     /// Each file is a sound file of the project with a fault put in. The time and memory of each reader are bounded.
     /// One file of each finding is kept in out/hostile.
     Hostile(hostile::HostileArgs),
+    /// Write a patched copy of Rapier's source, with which a physics step takes half the time.
+    ///
+    /// Prints what a game puts into its Cargo.toml. Nothing in this workspace builds on it.
+    RapierPatch(rapier_patch::RapierPatchArgs),
     /// Build the demo as a web page in out/web and serve it on this machine.
     ///
     /// Installs the target wasm32-unknown-unknown, and the binding generator in third_party/tools, by itself.
@@ -168,6 +173,7 @@ fn dispatch(verb: Verb) -> Result<ExitCode> {
         Verb::Determinism(arguments) => determinism::run(&workspace, &arguments)?,
         Verb::Fuzz(arguments) => fuzz::run(&workspace, &arguments)?,
         Verb::Hostile(arguments) => hostile::run(&workspace, &arguments)?,
+        Verb::RapierPatch(arguments) => rapier_patch::run(&workspace, &arguments)?,
         Verb::Web(arguments) => web::run(&workspace, &arguments)?,
         Verb::Pad { arguments } => {
             let mut pad = workspace.cargo();

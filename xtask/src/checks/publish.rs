@@ -2,12 +2,11 @@
 //! published, the oldest direct dependencies, and the features that the other checks do not turn on.
 
 use std::fs;
-use std::path::{Path, PathBuf};
 
 use anyhow::{Context, Result, ensure};
 
 use super::{Step, Verdict, bevy};
-use crate::workspace::{Workspace, output_of, run};
+use crate::workspace::{Workspace, copy_folder, output_of, run};
 
 /// The crates that are published, each after those that it needs: name and folder.
 const CRATES: [(&str, &str); 4] = [
@@ -117,25 +116,9 @@ fn manifest_of_packages(version: &str) -> String {
     )
 }
 
-/// Copies the files of a package. Its lock file would be ignored.
-fn copy_folder(from: &Path, to: &Path) -> Result<()> {
-    fs::create_dir_all(to).with_context(|| format!("make {}", to.display()))?;
-    for entry in fs::read_dir(from).with_context(|| format!("list {}", from.display()))? {
-        let from: PathBuf = entry?.path();
-        let to = to.join(from.file_name().unwrap_or_default());
-        if from.is_dir() {
-            copy_folder(&from, &to)?;
-        } else {
-            fs::copy(&from, &to).with_context(|| format!("copy {}", from.display()))?;
-        }
-    }
-    Ok(())
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::workspace::ScratchFolder;
 
     #[test]
     fn every_crate_that_may_be_published_is_checked() {
@@ -159,16 +142,5 @@ mod tests {
         let text = manifest_of_packages("1.2.3");
         assert!(text.contains("members = [\"policy-core-1.2.3\", \"policy-space-gamepad-1.2.3\","), "{text}");
         assert!(text.ends_with("physics-rapier = { path = \"physics-rapier-1.2.3\" }\n"), "{text}");
-    }
-
-    #[test]
-    fn a_folder_is_copied_whole() {
-        let root = ScratchFolder::new("publish");
-        let (from, to) = (root.path().join("from"), root.path().join("to"));
-        fs::create_dir_all(from.join("src/deep")).unwrap();
-        fs::write(from.join("src/deep/lib.rs"), "text").unwrap();
-        copy_folder(&from, &to).unwrap();
-        assert_eq!(fs::read_to_string(to.join("src/deep/lib.rs")).unwrap(), "text");
-        assert!(copy_folder(&root.path().join("none"), &to).unwrap_err().to_string().contains("none"));
     }
 }
