@@ -58,7 +58,7 @@ enum Verb {
     Deny,
     /// Check what a release needs: packages, oldest dependencies, features that the tests leave off.
     ///
-    /// Compiles Rapier twice and Bevy once more; this takes about half an hour on two cores.
+    /// Compiles Rapier three times and Bevy once more.
     PublishCheck(PublishArgs),
     /// Build the C interface and install header, libraries and pkg-config file.
     Capi(capi::CapiArgs),
