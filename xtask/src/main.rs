@@ -10,6 +10,7 @@ mod determinism;
 mod fuzz;
 mod hostile;
 mod onnx;
+mod rapier_patch;
 mod setup;
 mod web;
 mod workspace;
@@ -55,6 +56,10 @@ enum Verb {
     ///
     /// Installs the pinned cargo-deny in third_party/tools first; this takes about two minutes, once.
     Deny,
+    /// Check what a release needs: packages, oldest dependencies, features that the tests leave off.
+    ///
+    /// Compiles Rapier three times and Bevy once more.
+    PublishCheck(PublishArgs),
     /// Build the C interface and install header, libraries and pkg-config file.
     Capi(capi::CapiArgs),
     /// Measure, and print a table or one JSON object.
@@ -74,6 +79,10 @@ enum Verb {
     /// Each file is a sound file of the project with a fault put in. The time and memory of each reader are bounded.
     /// One file of each finding is kept in out/hostile.
     Hostile(hostile::HostileArgs),
+    /// Write a patched copy of Rapier's source, with which a physics step takes half the time.
+    ///
+    /// Prints what a game puts into its Cargo.toml. Nothing in this workspace builds on it.
+    RapierPatch(rapier_patch::RapierPatchArgs),
     /// Build the demo as a web page in out/web and serve it on this machine.
     ///
     /// Installs the target wasm32-unknown-unknown, and the binding generator in third_party/tools, by itself.
@@ -113,6 +122,14 @@ struct TestArgs {
     strict: bool,
 }
 
+/// Arguments of `cargo xtask publish-check`.
+#[derive(Debug, Args)]
+struct PublishArgs {
+    /// Leave out the step that compiles Bevy.
+    #[arg(long)]
+    no_bevy: bool,
+}
+
 fn main() -> ExitCode {
     match dispatch(Cli::parse().verb) {
         Ok(code) => code,
@@ -138,6 +155,11 @@ fn dispatch(verb: Verb) -> Result<ExitCode> {
         Verb::Imports => checks::imports::check(&workspace)?,
         Verb::Words => checks::words::check(&workspace)?,
         Verb::Deny => return Ok(checks::run(&workspace, checks::DENY, false)),
+        Verb::PublishCheck(arguments) => {
+            setup::prepare(&workspace, Purpose::Tests, false)?;
+            let steps = if arguments.no_bevy { checks::PUBLISH } else { checks::PUBLISH_ALL };
+            return Ok(checks::run(&workspace, steps, false));
+        }
         Verb::Capi(arguments) if arguments.check => {
             setup::prepare(&workspace, Purpose::Tests, false)?;
             return Ok(checks::run(&workspace, checks::C_INTERFACE, false));
@@ -151,6 +173,7 @@ fn dispatch(verb: Verb) -> Result<ExitCode> {
         Verb::Determinism(arguments) => determinism::run(&workspace, &arguments)?,
         Verb::Fuzz(arguments) => fuzz::run(&workspace, &arguments)?,
         Verb::Hostile(arguments) => hostile::run(&workspace, &arguments)?,
+        Verb::RapierPatch(arguments) => rapier_patch::run(&workspace, &arguments)?,
         Verb::Web(arguments) => web::run(&workspace, &arguments)?,
         Verb::Pad { arguments } => {
             let mut pad = workspace.cargo();

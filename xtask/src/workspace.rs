@@ -3,6 +3,7 @@
 //! Everything that `xtask` itself says goes to stderr, so that stdout belongs to the program that it runs.
 
 use std::ffi::OsStr;
+use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::{Command, ExitCode, ExitStatus, Stdio};
 
@@ -118,6 +119,24 @@ pub fn answers(command: &mut Command) -> bool {
         .is_ok_and(|status| status.success())
 }
 
+/// Copies a folder with all that is in it.
+///
+/// # Errors
+/// When something can't be read or written.
+pub fn copy_folder(from: &Path, to: &Path) -> Result<()> {
+    fs::create_dir_all(to).with_context(|| format!("make {}", to.display()))?;
+    for entry in fs::read_dir(from).with_context(|| format!("list {}", from.display()))? {
+        let from: PathBuf = entry?.path();
+        let to = to.join(from.file_name().unwrap_or_default());
+        if from.is_dir() {
+            copy_folder(&from, &to)?;
+        } else {
+            fs::copy(&from, &to).with_context(|| format!("copy {}", from.display()))?;
+        }
+    }
+    Ok(())
+}
+
 /// A command as one would type it.
 pub fn shown(command: &Command) -> String {
     let program =
@@ -179,5 +198,16 @@ mod tests {
         let message = run(&mut command).unwrap_err().to_string();
         assert!(message.contains("no-such-subcommand-of-cargo"), "{message}");
         assert!(run(&mut Command::new("no-such-program-anywhere")).is_err());
+    }
+
+    #[test]
+    fn a_folder_is_copied_whole() {
+        let root = ScratchFolder::new("copy");
+        let (from, to) = (root.path().join("from"), root.path().join("to"));
+        fs::create_dir_all(from.join("src/deep")).unwrap();
+        fs::write(from.join("src/deep/lib.rs"), "text").unwrap();
+        copy_folder(&from, &to).unwrap();
+        assert_eq!(fs::read_to_string(to.join("src/deep/lib.rs")).unwrap(), "text");
+        assert!(copy_folder(&root.path().join("none"), &to).unwrap_err().to_string().contains("none"));
     }
 }

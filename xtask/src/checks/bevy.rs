@@ -21,8 +21,7 @@ const FEATURES: &str = "--features=mujoco,reload";
 /// # Errors
 /// When its toolchain is missing and can't be installed, or a check fails.
 pub fn check(workspace: &Workspace) -> Result<Verdict> {
-    let channel = channel(workspace)?;
-    provide(workspace, &channel)?;
+    let channel = provided(workspace)?;
     run(cargo(workspace, &channel).args(["fmt", "--check"])).context("formatting")?;
     run(cargo(workspace, &channel).args([
         "clippy",
@@ -68,6 +67,16 @@ pub fn channel(workspace: &Workspace) -> Result<String> {
     let text = std::fs::read_to_string(&file).with_context(|| format!("read {}", file.display()))?;
     channel_of(&text)
         .with_context(|| format!("expected a line `channel = \"...\"` in {}, found none", file.display()))
+}
+
+/// The toolchain, installed when it is missing.
+///
+/// # Errors
+/// When it can't be installed.
+pub fn provided(workspace: &Workspace) -> Result<String> {
+    let channel = channel(workspace)?;
+    provide(workspace, &channel)?;
+    Ok(channel)
 }
 
 fn channel_of(text: &str) -> Option<String> {

@@ -5,6 +5,7 @@ mod c_interface;
 mod definitions;
 mod deny;
 pub mod imports;
+mod publish;
 mod steps;
 pub mod words;
 
@@ -13,6 +14,7 @@ use std::time::{Duration, Instant};
 
 use anyhow::Result;
 
+pub use publish::{PUBLISH, PUBLISH_ALL};
 pub use steps::{ALL, C_INTERFACE, DENY};
 
 use crate::workspace::Workspace;
