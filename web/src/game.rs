@@ -87,6 +87,12 @@ impl Game {
         }
     }
 
+    /// Seconds that the replay still takes; `None` when none is played.
+    pub fn replay_left(&self) -> Option<f32> {
+        let Input::Replay(playback) = &self.input else { return None };
+        Some((playback.replay().ticks() - playback.tick()) as f32 * self.tick_secs())
+    }
+
     /// Begins anew. The script is for flat ground.
     pub fn restart(&mut self, script: bool) -> Result<(), JsError> {
         let flat = ArenaConfig { players: self.chosen.players, ..ArenaConfig::default() };
@@ -217,5 +223,5 @@ impl Game {
 fn poses_of(arena: &Arena) -> Poses {
     let players = (0..arena.character_count()).filter_map(|index| arena.player(index));
     let bodies = players.flat_map(|player| player.state.bodies.iter().map(|b| (b.position, b.rotation)));
-    bodies.chain(arena.props().map(|(_, motion)| (motion.position, motion.rotation))).collect()
+    bodies.chain(arena.props().map(|prop| (prop.motion.position, prop.motion.rotation))).collect()
 }

@@ -6,16 +6,25 @@
 mod game;
 mod stage;
 
-use lockstep::{ArenaConfig, ArenaScene, SHOVE_BUTTON};
+use lockstep::{ArenaConfig, ArenaScene, LooseKind, PUT_BUTTON, SHOVE_BUTTON, THROW_BUTTON};
 use policy_core::{Button, Buttons, GamepadState};
+use viewer::render::Appearance;
 use wasm_bindgen::prelude::*;
 
 use crate::game::Game;
-use crate::stage::Stage;
+use crate::stage::{Screen, Stage};
 
 /// Names of the buttons in the order of the bits that the page sends.
-const BUTTONS: [Button; 6] =
-    [Button::South, Button::East, Button::North, Button::West, SHOVE_BUTTON, Button::RightShoulder];
+const BUTTONS: [Button; 8] = [
+    Button::South,
+    Button::East,
+    Button::North,
+    Button::West,
+    SHOVE_BUTTON,
+    Button::RightShoulder,
+    THROW_BUTTON,
+    PUT_BUTTON,
+];
 
 /// The demo of one page.
 #[wasm_bindgen]
@@ -24,30 +33,50 @@ pub struct Demo {
     stage: Stage,
 }
 
+/// A world and how its characters look: all that needs no screen, made while that is opened.
 #[wasm_bindgen]
-impl Demo {
-    /// Opens the canvas and makes the world: the playground, or flat ground with crates. `pack` and `mesh` are the files that
-    /// the page has fetched.
+pub struct Ready {
+    game: Game,
+    appearance: Appearance,
+}
+
+#[wasm_bindgen]
+impl Ready {
+    /// The playground, or flat ground with crates. `pack` and `mesh` are the files that the page has fetched.
     ///
     /// # Errors
-    /// When nothing can be drawn with, or a file is no pack or mesh.
-    pub async fn start(
-        canvas: web_sys::HtmlCanvasElement,
-        pack: Vec<u8>,
-        mesh: Vec<u8>,
-        players: usize,
-        flat: bool,
-    ) -> Result<Demo, JsError> {
+    /// When a file is no pack or mesh, or the world can't hold so many players.
+    pub fn make(pack: Vec<u8>, mesh: &[u8], players: usize, flat: bool) -> Result<Ready, JsError> {
         let chosen = ArenaConfig { players, ..ArenaConfig::default() };
         let scene = if flat { chosen.scene } else { ArenaScene::Playground };
         let game = Game::new(pack, ArenaConfig { scene, ..chosen })?;
-        let stage = Stage::open(canvas, &game, &mesh).await?;
-        Ok(Self { game, stage })
+        let appearance = stage::appearance(&game, mesh)?;
+        Ok(Self { game, appearance })
+    }
+}
+
+#[wasm_bindgen]
+impl Demo {
+    /// The demo of a world on a screen.
+    pub fn start(ready: Ready, screen: Screen) -> Demo {
+        let Ready { game, appearance } = ready;
+        let stage = Stage::new(screen, &game, appearance);
+        Self { game, stage }
     }
 
     /// What draws.
     pub fn adapter(&self) -> String {
         self.stage.adapter().into()
+    }
+
+    /// True when the processor draws, as far as the browser tells.
+    pub fn is_software(&self) -> bool {
+        self.stage.is_software()
+    }
+
+    /// Why nothing can be drawn any more, once that is so.
+    pub fn lost(&self) -> Option<String> {
+        self.stage.lost().map(str::to_owned)
     }
 
     /// The canvas has this many pixels now.
@@ -83,9 +112,9 @@ impl Demo {
         self.stage.draw(&self.game)
     }
 
-    /// Draws coarser shadows and meshes from now on: for a machine that is slow.
-    pub fn draw_cheaply(&mut self) {
-        self.stage.draw_cheaply();
+    /// Draws coarser shadows and meshes from now on, for a machine that is slow; or fine ones again.
+    pub fn draw_cheaply(&mut self, on: bool) {
+        self.stage.draw_cheaply(on);
     }
 
     /// Turns the camera, radians; for a mouse or a finger.
@@ -126,6 +155,21 @@ impl Demo {
     /// Seconds and falls of a run over the course that is done; empty before.
     pub fn finished(&self) -> Vec<f32> {
         self.game.finished().map_or(Vec::new(), |(secs, falls)| vec![secs, falls as f32])
+    }
+
+    /// How many more balls can be thrown, or else things be put down.
+    pub fn left(&self, balls: bool) -> usize {
+        let arena = self.game.arena();
+        if balls {
+            arena.left(LooseKind::Ball)
+        } else {
+            LooseKind::PUT.into_iter().map(|kind| arena.left(kind)).sum()
+        }
+    }
+
+    /// Seconds that the replay still takes; undefined when none is played.
+    pub fn replay_left(&self) -> Option<f32> {
+        self.game.replay_left()
     }
 
     /// Names of the policies.

@@ -9,7 +9,7 @@ use viewer::gpu::Gpu;
 use viewer::mesh::{Rig, SkinnedMesh};
 use viewer::render::{Appearance, Figure, RenderConfig, Renderer, Scene};
 use viewer::things;
-use wasm_bindgen::JsError;
+use wasm_bindgen::prelude::*;
 
 use crate::game::Game;
 
@@ -17,22 +17,22 @@ use crate::game::Game;
 const TINTS: [[f32; 4]; 4] =
     [[0.0; 4], [0.12, 0.42, 0.78, 0.9], [0.16, 0.55, 0.30, 0.9], [0.75, 0.35, 0.12, 0.9]];
 
-pub struct Stage {
+/// The canvas, opened: what takes time and needs no file.
+#[wasm_bindgen]
+pub struct Screen {
     gpu: Gpu,
     surface: wgpu::Surface<'static>,
     configuration: wgpu::SurfaceConfiguration,
-    renderer: Renderer,
-    camera: Camera,
-    scene: Scene,
 }
 
-impl Stage {
-    /// Opens a canvas to draw the characters of `game` with a mesh.
-    pub async fn open(canvas: web_sys::HtmlCanvasElement, game: &Game, mesh: &[u8]) -> Result<Self, JsError> {
+#[wasm_bindgen]
+impl Screen {
+    /// Opens it.
+    ///
+    /// # Errors
+    /// When nothing can be drawn with.
+    pub async fn open(canvas: web_sys::HtmlCanvasElement) -> Result<Screen, JsError> {
         let size = [canvas.width().max(1), canvas.height().max(1)];
-        let rig = rig(game)?;
-        let mesh = SkinnedMesh::from_bytes(mesh, &rig)?;
-        let appearance = Appearance::new(rig.skeleton(), Some(mesh));
         let (gpu, surface, adapter) = Gpu::for_target(wgpu::SurfaceTarget::Canvas(canvas)).await?;
         let mut configuration = surface
             .get_default_config(&adapter, size[0], size[1])
@@ -42,22 +42,37 @@ impl Stage {
             configuration.format = *plain;
         }
         surface.configure(&gpu.device, &configuration);
-        let config = RenderConfig::for_adapter(gpu.is_software);
-        let renderer = Renderer::new(&gpu, configuration.format, config, appearance);
-        let mut stage = Self {
-            gpu,
-            surface,
-            configuration,
-            renderer,
-            camera: Camera::default(),
-            scene: Scene::default(),
-        };
+        Ok(Self { gpu, surface, configuration })
+    }
+}
+
+pub struct Stage {
+    screen: Screen,
+    renderer: Renderer,
+    camera: Camera,
+    scene: Scene,
+}
+
+impl Stage {
+    /// Draws the characters of `game`.
+    pub fn new(screen: Screen, game: &Game, appearance: Appearance) -> Self {
+        let config = quality(screen.gpu.is_software);
+        let renderer = Renderer::new(&screen.gpu, screen.configuration.format, config, appearance);
+        let mut stage = Self { screen, renderer, camera: Camera::default(), scene: Scene::default() };
         stage.reset(game);
-        Ok(stage)
+        stage
+    }
+
+    pub fn is_software(&self) -> bool {
+        self.screen.gpu.is_software
+    }
+
+    pub fn lost(&self) -> Option<&str> {
+        self.screen.gpu.lost()
     }
 
     pub fn adapter(&self) -> &str {
-        &self.gpu.adapter_name
+        &self.screen.gpu.adapter_name
     }
 
     pub fn heading(&self) -> Heading {
@@ -73,19 +88,20 @@ impl Stage {
     }
 
     pub fn resize(&mut self, [width, height]: [u32; 2]) {
-        let most = self.gpu.device.limits().max_texture_dimension_2d;
+        let Screen { gpu, surface, configuration } = &mut self.screen;
+        let most = gpu.device.limits().max_texture_dimension_2d;
         let size = [width.clamp(1, most), height.clamp(1, most)];
-        if size != [self.configuration.width, self.configuration.height] {
-            [self.configuration.width, self.configuration.height] = size;
-            self.surface.configure(&self.gpu.device, &self.configuration);
+        if size != [configuration.width, configuration.height] {
+            [configuration.width, configuration.height] = size;
+            surface.configure(&gpu.device, configuration);
         }
     }
 
-    /// As for a processor that draws, from now on.
-    pub fn draw_cheaply(&mut self) {
+    /// As for a processor that draws, from now on, or as for a graphics card.
+    pub fn draw_cheaply(&mut self, on: bool) {
         let appearance = self.renderer.appearance().clone();
-        let config = RenderConfig::for_adapter(true);
-        self.renderer = Renderer::new(&self.gpu, self.configuration.format, config, appearance);
+        self.renderer =
+            Renderer::new(&self.screen.gpu, self.screen.configuration.format, quality(on), appearance);
     }
 
     /// The camera behind the player again.
@@ -109,21 +125,22 @@ impl Stage {
     /// Draws; false when the canvas gives no picture.
     pub fn draw(&mut self, game: &Game) -> bool {
         self.set_scene(game);
-        let texture = match self.surface.get_current_texture() {
+        let Screen { gpu, surface, configuration } = &self.screen;
+        let texture = match surface.get_current_texture() {
             wgpu::CurrentSurfaceTexture::Success(texture)
             | wgpu::CurrentSurfaceTexture::Suboptimal(texture) => texture,
             wgpu::CurrentSurfaceTexture::Outdated | wgpu::CurrentSurfaceTexture::Lost => {
-                self.surface.configure(&self.gpu.device, &self.configuration);
+                surface.configure(&gpu.device, configuration);
                 return false;
             }
             _ => return false,
         };
         let view = texture.texture.create_view(&wgpu::TextureViewDescriptor::default());
-        let mut encoder = self.gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
-        let size = [self.configuration.width, self.configuration.height];
+        let mut encoder = gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
+        let size = [configuration.width, configuration.height];
         self.renderer.draw(&mut encoder, &view, size, &self.scene);
-        self.gpu.queue.submit([encoder.finish()]);
-        self.gpu.queue.present(texture);
+        gpu.queue.submit([encoder.finish()]);
+        gpu.queue.present(texture);
         true
     }
 
@@ -148,14 +165,28 @@ impl Stage {
             });
         }
         things::fixtures(scene, arena.layout());
-        for (&pose, (placed, _)) in props.iter().zip(arena.props()) {
-            let anchor = placed.joint.and_then(|joint| joint.anchor());
-            things::prop(scene, &placed.prop.solid, pose, placed.paint, anchor);
+        for (&pose, prop) in props.iter().zip(arena.props()) {
+            things::prop(scene, prop.solid, pose, prop.paint, prop.anchor);
         }
         if let Some(race) = arena.race(0) {
             things::checkpoints(scene, arena.layout(), race);
         }
     }
+}
+
+/// A picture for a graphics card; or for a processor, which draws one sample a pixel and fewer taps of each shadow.
+fn quality(cheap: bool) -> RenderConfig {
+    let config = RenderConfig::for_adapter(cheap);
+    // The coarsest mesh has holes that show near the eye; with fewer pixels a near figure is not many of them.
+    let level_pixels = [f32::INFINITY, f32::INFINITY, 150.0];
+    if cheap { RenderConfig { samples: 1, shadow_taps: 4, level_pixels, ..config } } else { config }
+}
+
+/// How the characters of `game` look with a mesh.
+pub fn appearance(game: &Game, mesh: &[u8]) -> Result<Appearance, JsError> {
+    let rig = rig(game)?;
+    let mesh = SkinnedMesh::from_bytes(mesh, &rig)?;
+    Ok(Appearance::new(rig.skeleton(), Some(mesh)))
 }
 
 /// The bodies with all joints at zero and the root upright at the origin: what the mesh is bound to.

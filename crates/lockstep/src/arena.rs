@@ -2,8 +2,8 @@
 
 use std::sync::Arc;
 
-use physics_rapier::{Model, Motion, World};
-use playground::{PlacedProp, Playground, Race, WanderPath, Wanderer};
+use physics_rapier::{Model, World};
+use playground::{LooseKind, Playground, Race, WanderPath, Wanderer};
 use policy_core::glam::Vec2;
 use policy_core::{Button, CharacterPack, Heading};
 use replay::{Header, Pad, StateHash};
@@ -29,6 +29,8 @@ pub struct Arena {
     pub(crate) wanderers: Vec<Wanderer>,
     /// One for each player.
     pub(crate) races: Vec<Race>,
+    /// What was thrown and put down: the props of the world after those of the layout.
+    pub(crate) loose: Vec<LooseKind>,
     pub(crate) tick: u64,
     dt_secs: f32,
     /// For the bytes of a controller's state, while it is hashed.
@@ -82,6 +84,7 @@ impl Arena {
             players,
             wanderers,
             races,
+            loose: Vec::new(),
             tick: 0,
             dt_secs,
             scratch: Vec::new(),
@@ -142,15 +145,6 @@ impl Arena {
         self.players.get(index).map(Player::view)
     }
 
-    /// Each prop of the layout, and how it moves.
-    pub fn props(&self) -> impl Iterator<Item = (&PlacedProp, Motion)> + '_ {
-        self.layout
-            .props
-            .iter()
-            .enumerate()
-            .filter_map(|(index, placed)| Some((placed, self.world.prop(index)?.1)))
-    }
-
     /// The header of a replay of this arena, with a hash a second.
     #[must_use]
     pub fn header(&self) -> Header {
@@ -175,6 +169,7 @@ impl Arena {
             if self.players[index].presses(pad, SHOVE_BUTTON) {
                 self.shove(pad.heading().direction())?;
             }
+            self.throw(index, pad)?;
         }
         for (index, player) in self.players.iter_mut().enumerate() {
             let targets = match pads.get(index) {
@@ -226,6 +221,7 @@ impl Arena {
         for player in &mut self.players {
             player.hash_into(&mut hash, &mut self.scratch);
         }
+        self.loose.iter().for_each(|kind| hash.word(*kind as u32));
         for wanderer in &self.wanderers {
             wanderer.bits(|word| hash.word(word));
         }

@@ -29,6 +29,7 @@
 
 mod arena;
 mod error;
+mod loose;
 mod player;
 mod saved;
 mod scene;
@@ -36,7 +37,9 @@ mod script;
 
 pub use arena::{Arena, SHOVE_BUTTON};
 pub use error::ArenaError;
+pub use loose::{PUT_BUTTON, PropView, THROW_BUTTON};
 pub use player::PlayerView;
+pub use playground::LooseKind;
 pub use replay::{Pad, StateHash};
 pub use saved::ArenaState;
 pub use scene::{ArenaConfig, ArenaScene, MOST_CRATES};

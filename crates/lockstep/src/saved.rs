@@ -1,19 +1,20 @@
 //! The whole state of an arena as a value.
 
 use physics_rapier::WorldSnapshot;
-use playground::{Race, Wanderer};
+use playground::{LooseKind, Race, Wanderer};
 
 use crate::arena::Arena;
 use crate::error::ArenaError;
 use crate::player::PlayerState;
 
-/// Physics, contacts, controllers, pads, wanderers and the clock of the course at the end of a tick.
+/// Physics, contacts, controllers, pads, wanderers, what was thrown and the clock of the course at the end of a tick.
 #[derive(Clone, Debug)]
 pub struct ArenaState {
     world: WorldSnapshot,
     players: Vec<PlayerState>,
     wanderers: Vec<Wanderer>,
     races: Vec<Race>,
+    loose: Vec<LooseKind>,
     tick: u64,
 }
 
@@ -34,6 +35,7 @@ impl Arena {
             players: self.players.iter().map(crate::player::Player::save).collect(),
             wanderers: self.wanderers.clone(),
             races: self.races.clone(),
+            loose: self.loose.clone(),
             tick: self.tick,
         }
     }
@@ -55,6 +57,7 @@ impl Arena {
         }
         self.wanderers.clone_from(&state.wanderers);
         self.races.clone_from(&state.races);
+        self.loose.clone_from(&state.loose);
         self.tick = state.tick;
         Ok(())
     }

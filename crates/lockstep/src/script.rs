@@ -4,12 +4,13 @@ use policy_core::{Button, Buttons};
 use replay::Pad;
 
 use crate::arena::{Arena, SHOVE_BUTTON};
+use crate::loose::{PUT_BUTTON, THROW_BUTTON};
 
 /// Ticks of the script: 20 s at 30 Hz.
 pub const SCRIPT_TICKS: u32 = 600;
 
-/// The pad of a player in a tick of the script: walk, run in a bend, roll, walk, a shove and getting up, crouch. Players
-/// after the first do the same a little later and steered to other sides.
+/// The pad of a player in a tick of the script: walk, run in a bend, roll, walk, a shove and getting up, a crate put
+/// down and a ball thrown at it, crouch. Players after the first do the same a little later and steered to other sides.
 #[must_use]
 pub fn script_pad(tick: u32, player: usize) -> Pad {
     let tick = tick.saturating_sub(7 * player as u32);
@@ -24,6 +25,8 @@ pub fn script_pad(tick: u32, player: usize) -> Pad {
     let crouch = ramp(17.0, 1.0);
     let mut buttons = Buttons::NONE;
     buttons.set(Button::East, (9.0..9.2).contains(&secs));
+    buttons.set(PUT_BUTTON, (15.6..15.8).contains(&secs));
+    buttons.set(THROW_BUTTON, (16.4..16.6).contains(&secs));
     buttons.set(SHOVE_BUTTON, player == 0 && (11.0..11.2).contains(&secs));
     Pad {
         left_stick: [(side * bend * 60.0) as i8, (forward * 127.0) as i8],

@@ -1,7 +1,10 @@
 //! The same pads give the same state: again, after a restore, and in the order in which rollback asks for it.
 #![allow(missing_docs, reason = "tests")]
 
-use lockstep::{Arena, ArenaConfig, ArenaError, ArenaScene, Pad, SCRIPT_TICKS, Seen, script_pad};
+use lockstep::{
+    Arena, ArenaConfig, ArenaError, ArenaScene, LooseKind, PUT_BUTTON, Pad, SCRIPT_TICKS, Seen, THROW_BUTTON,
+    script_pad,
+};
 use replay::{Playback, Recorder, Replay};
 
 const PACK: &[u8] = include_bytes!("../../../assets/humanoid.pack.safetensors");
@@ -144,7 +147,7 @@ fn in_the_playground_the_others_wander_and_the_pendulum_keeps_its_height() {
             *way += velocity.truncate().length() * arena.tick_secs();
         }
         if tick > 300 {
-            heights.push(arena.props().nth(index).unwrap().1.position.z);
+            heights.push(arena.props().nth(index).unwrap().motion.position.z);
         }
     }
     assert!(ways[1..].iter().filter(|way| **way > 2.0).count() >= 2, "{ways:?}");
@@ -203,4 +206,70 @@ fn the_first_checkpoint_starts_the_clock() {
         }
     }
     panic!("{:?} at {}", arena.race(0), arena.player(0).unwrap().state.root().position);
+}
+
+/// A pad that presses a button in one tick of four: it goes down anew each time.
+fn tapping(tick: u32, button: policy_core::Button, heading: f32) -> Pad {
+    let mut state = policy_core::GamepadState::default();
+    state.buttons.set(button, tick.is_multiple_of(4));
+    Pad::from_state(&state, policy_core::Heading::from_angle(heading))
+}
+
+#[test]
+fn a_ball_is_thrown_once_a_press_and_flies_where_the_camera_looks() {
+    let mut arena = arena(1);
+    let props = arena.props().count();
+    let held = tapping(0, THROW_BUTTON, 1.0);
+    (0..10).for_each(|_| arena.tick(&[held]).unwrap());
+    assert_eq!(arena.props().count(), props + 1, "one for one press");
+    let ball = arena.props().last().unwrap().motion;
+    let from = arena.player(0).unwrap().state.root().position;
+    let way = (ball.position - from).truncate();
+    assert!(
+        way.length() > 2.0 && way.normalize().dot(policy_core::glam::Vec2::from_angle(1.0)) > 0.98,
+        "{way}"
+    );
+    assert_eq!(arena.left(LooseKind::Ball), LooseKind::Ball.most() - 1);
+}
+
+#[test]
+fn what_is_put_down_comes_in_turn_and_ends() {
+    let mut arena = arena(1);
+    let props = arena.props().count();
+    for tick in 0..4 * 20 {
+        arena.tick(&[tapping(tick, PUT_BUTTON, tick as f32)]).unwrap();
+    }
+    assert_eq!(arena.props().count(), props + 16, "4 of each kind");
+    assert!(LooseKind::PUT.iter().all(|kind| arena.left(*kind) == 0));
+    let paints: Vec<_> = arena.props().skip(props).take(5).map(|prop| prop.paint).collect();
+    let expected: Vec<_> = (0..5).map(|index| LooseKind::PUT[index % 4].prop().1).collect();
+    assert_eq!(paints, expected);
+}
+
+#[test]
+fn throws_are_saved_taken_back_and_hashed() {
+    let mut arena = playground(2);
+    let pads = |tick: u32| {
+        let throws = if tick.is_multiple_of(3) { THROW_BUTTON } else { PUT_BUTTON };
+        [tapping(tick, throws, 0.3), tapping(tick + 2, PUT_BUTTON, 2.0)]
+    };
+    (0..20).for_each(|tick| arena.tick(&pads(tick)).unwrap());
+    let (saved, at, props) = (arena.save(), arena.hash(), arena.props().count());
+    let run = |arena: &mut Arena| -> Vec<u64> {
+        let tick = |tick| {
+            arena.tick(&pads(tick)).unwrap();
+            arena.hash()
+        };
+        (20..60).map(tick).collect()
+    };
+    let first = run(&mut arena);
+    assert!(arena.props().count() > props + 5, "more were thrown");
+    arena.restore(&saved).unwrap();
+    assert_eq!((arena.hash(), arena.props().count()), (at, props));
+    assert_eq!(run(&mut arena), first);
+    let mut other = playground(2);
+    (0..20).for_each(|tick| other.tick(&pads(tick)).unwrap());
+    assert_eq!(other.hash(), at);
+    other.tick(&[Pad::default(), Pad::default()]).unwrap();
+    assert_ne!(other.hash(), first[0], "a press is seen at once");
 }

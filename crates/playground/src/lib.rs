@@ -20,6 +20,7 @@
 
 mod file;
 mod layout;
+mod loose;
 mod race;
 mod swing;
 mod wander;
@@ -30,6 +31,7 @@ use glam::{Quat, Vec2, Vec3};
 use policy_core::contract::{Fixture, Joint, Motion, Prop};
 
 pub use file::SceneFileError;
+pub use loose::{LooseKind, put_down, thrown};
 pub use race::{Race, RaceEvent, RaceState};
 pub use wander::{WanderPath, Wanderer, Wish};
 

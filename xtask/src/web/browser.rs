@@ -1,15 +1,18 @@
 //! Headless Chromium through the WebDriver protocol.
 
-use std::net::{Ipv4Addr, SocketAddr, TcpListener};
+use std::net::{Ipv4Addr, TcpListener};
 use std::path::{Path, PathBuf};
 use std::process::{Child, Command, Stdio};
 use std::thread;
 use std::time::{Duration, Instant};
 
 use anyhow::{Context, Result, bail, ensure};
+use base64::Engine as _;
+use base64::engine::general_purpose::STANDARD;
 use serde_json::{Value, json};
 
-use super::http::request;
+use super::graphics::Graphics;
+use super::http::Client;
 use crate::workspace::answers;
 
 /// What makes Chromium leave the network alone.
@@ -25,38 +28,10 @@ const FLAGS: [&str; 9] = [
     "--window-size=1280,720",
 ];
 
-/// What a page can draw with. The processor does it in both cases.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Graphics {
-    /// WebGPU.
-    WebGpu,
-    /// WebGL2 alone, as in browsers without WebGPU.
-    WebGl2,
-}
-
-impl Graphics {
-    const fn flags(self) -> &'static [&'static str] {
-        match self {
-            // Without Vulkan in all of Chromium the canvas stays empty.
-            Graphics::WebGpu => &[
-                "--enable-unsafe-webgpu",
-                "--use-webgpu-adapter=swiftshader",
-                "--enable-unsafe-swiftshader",
-                "--enable-features=Vulkan",
-                "--use-vulkan=swiftshader",
-                "--use-angle=vulkan",
-            ],
-            Graphics::WebGl2 => {
-                &["--disable-features=WebGPU", "--use-angle=swiftshader", "--enable-unsafe-swiftshader"]
-            }
-        }
-    }
-}
-
 /// A browser with one page; ends when it is dropped.
 pub struct Browser {
     driver: Child,
-    address: SocketAddr,
+    client: Client,
     session: String,
     profile: PathBuf,
 }
@@ -85,9 +60,9 @@ impl Browser {
             .context("start chromedriver")?;
         let profile =
             std::env::temp_dir().join(format!("policy-space-browser-{}-{}", std::process::id(), port.port()));
-        let mut browser = Self { driver, address: port, session: String::new(), profile };
+        let mut browser = Self { driver, client: Client::new(port), session: String::new(), profile };
         let start = Instant::now();
-        while request(port, "GET", "/status", None).is_err() {
+        while browser.client.request("GET", "/status", None).is_err() {
             ensure!(start.elapsed() < Duration::from_secs(30), "chromedriver does not answer");
             thread::sleep(Duration::from_millis(100));
         }
@@ -101,13 +76,13 @@ impl Browser {
             "goog:chromeOptions": {"args": arguments},
             "goog:loggingPrefs": {"browser": "ALL"},
         }}});
-        let session = value(request(port, "POST", "/session", Some(&wanted))?)?;
+        let session = value(browser.client.request("POST", "/session", Some(&wanted))?)?;
         browser.session = session["sessionId"].as_str().context("expected a session, found none")?.to_owned();
         Ok(browser)
     }
 
     fn post(&self, verb: &str, body: &Value) -> Result<Value> {
-        value(request(self.address, "POST", &format!("/session/{}/{verb}", self.session), Some(body))?)
+        value(self.client.request("POST", &format!("/session/{}/{verb}", self.session), Some(body))?)
     }
 
     /// Opens a page.
@@ -137,13 +112,66 @@ impl Browser {
             .map(|_| ())
     }
 
+    /// Runs a command of the developer tools' protocol.
+    ///
+    /// # Errors
+    /// When the browser refuses it.
+    pub fn devtools(&self, command: &str, parameters: &Value) -> Result<Value> {
+        self.post("goog/cdp/execute", &json!({"cmd": command, "params": parameters}))
+    }
+
+    /// Clicks on the middle of an element, as a person does.
+    ///
+    /// # Errors
+    /// When there is no such element or something covers it.
+    pub fn click(&self, element: &str) -> Result<()> {
+        let found = self.post("element", &json!({"using": "css selector", "value": element}))?;
+        let id = found.as_object().and_then(|found| found.values().next()).and_then(Value::as_str);
+        let id = id.with_context(|| format!("expected an element {element}, found none"))?;
+        self.post(&format!("element/{id}/click"), &json!({})).map(|_| ())
+    }
+
+    /// Gives the window another size.
+    ///
+    /// # Errors
+    /// When the browser can't.
+    pub fn resize(&self, width: u32, height: u32) -> Result<()> {
+        self.post("window/rect", &json!({"width": width, "height": height})).map(|_| ())
+    }
+
+    /// The tab that is spoken to.
+    ///
+    /// # Errors
+    /// When it is gone.
+    pub fn window(&self) -> Result<String> {
+        let found = value(self.client.request("GET", &format!("/session/{}/window", self.session), None)?)?;
+        found.as_str().map(str::to_owned).context("expected a window, found none")
+    }
+
+    /// Opens another tab, empty.
+    ///
+    /// # Errors
+    /// When the browser can't.
+    pub fn new_tab(&self) -> Result<String> {
+        let made = self.post("window/new", &json!({"type": "tab"}))?;
+        made["handle"].as_str().map(str::to_owned).context("expected a window, found none")
+    }
+
+    /// Speaks to that tab from now on.
+    ///
+    /// # Errors
+    /// When it is gone.
+    pub fn switch_to(&self, window: &str) -> Result<()> {
+        self.post("window", &json!({"handle": window})).map(|_| ())
+    }
+
     /// A picture of the page as it is composed, as PNG.
     ///
     /// # Errors
     /// When the browser gives none, or the file can't be written.
     pub fn picture(&self, path: &Path) -> Result<()> {
         let text =
-            value(request(self.address, "GET", &format!("/session/{}/screenshot", self.session), None)?)?;
+            value(self.client.request("GET", &format!("/session/{}/screenshot", self.session), None)?)?;
         write_picture(path, text.as_str())
     }
 
@@ -171,7 +199,7 @@ impl Browser {
 impl Drop for Browser {
     fn drop(&mut self) {
         if !self.session.is_empty() {
-            let _ = request(self.address, "DELETE", &format!("/session/{}", self.session), None);
+            let _ = self.client.request("DELETE", &format!("/session/{}", self.session), None);
         }
         let _ = self.driver.kill();
         let _ = self.driver.wait();
@@ -188,41 +216,14 @@ fn value(mut answer: Value) -> Result<Value> {
 }
 
 fn write_picture(path: &Path, base64: Option<&str>) -> Result<()> {
-    let png = from_base64(base64.context("expected a picture, found none")?)?;
+    let text = base64.context("expected a picture, found none")?;
+    let png = STANDARD.decode(text).context("expected a picture as base64")?;
     std::fs::write(path, png).with_context(|| format!("write {}", path.display()))
-}
-
-fn from_base64(text: &str) -> Result<Vec<u8>> {
-    let mut out = Vec::with_capacity(text.len() / 4 * 3);
-    let (mut bits, mut held) = (0u32, 0);
-    for byte in text.bytes().filter(|byte| *byte != b'=') {
-        let value = match byte {
-            b'A'..=b'Z' => byte - b'A',
-            b'a'..=b'z' => byte - b'a' + 26,
-            b'0'..=b'9' => byte - b'0' + 52,
-            b'+' => 62,
-            b'/' => 63,
-            _ => bail!("expected base64, found {:?}", char::from(byte)),
-        };
-        bits = (bits << 6 | u32::from(value)) & 0x3fff;
-        held += 6;
-        if held >= 8 {
-            held -= 8;
-            out.push((bits >> held) as u8);
-        }
-    }
-    Ok(out)
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn a_picture_comes_back_from_text() {
-        assert_eq!(from_base64("aGVsbG8gd29ybGQ=").unwrap(), b"hello world");
-        assert!(from_base64("a*").is_err());
-    }
 
     #[test]
     fn an_error_of_the_browser_is_one() {

@@ -1,21 +1,25 @@
 //! Compiles the module, binds it to JavaScript, and lays the page out with names that change with their contents.
 
 use std::fs;
+use std::io::Write as _;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
 use anyhow::{Context, Result, ensure};
+use flate2::Compression;
+use flate2::write::GzEncoder;
 use serde_json::{Map, Value, json};
 use sha2::{Digest, Sha256};
 
+use super::shrink::shrink;
 use crate::workspace::{Workspace, output_of, run as run_command};
 
 const TARGET: &str = "wasm32-unknown-unknown";
 const MODULE: &str = "policy_space_web";
 const BINDER: &str = "wasm-bindgen";
 
-/// Least version of wasm-opt. 108, Debian's, mixes the tables of the module up, and it does not start.
-const LEAST_WASM_OPT: u32 = 132;
+/// Scripts of the page, in their order.
+const SCRIPTS: [&str; 5] = ["start.js", "clock.js", "shown.js", "devices.js", "controls.js"];
 
 /// The folder of the page, below the root.
 const FOLDER: &str = "out/web";
@@ -29,6 +33,8 @@ pub fn page(workspace: &Workspace, small: bool) -> Result<PathBuf> {
     let binder = binder(workspace)?;
     let bound = workspace.target().join("web-bound");
     let mut bind = workspace.command(&binder);
+    // Names of functions are a tenth of the module.
+    bind.args(["--remove-name-section", "--remove-producers-section"]);
     bind.args(["--target", "web", "--no-typescript", "--out-name", MODULE, "--out-dir"])
         .arg(&bound)
         .arg(&module);
@@ -88,32 +94,6 @@ fn locked_version<'a>(lock: &'a str, package: &str) -> Option<&'a str> {
     lines.next()?.strip_prefix("version = \"")?.strip_suffix('"')
 }
 
-/// The number in what `wasm-opt --version` says.
-fn wasm_opt_version(said: &str) -> Option<u32> {
-    said.split_whitespace().find_map(|word| word.parse().ok())
-}
-
-fn shrink(workspace: &Workspace, wasm: &Path) -> Result<()> {
-    let said = output_of(Command::new("wasm-opt").arg("--version")).unwrap_or_default();
-    let version = wasm_opt_version(&said);
-    if version.is_none_or(|version| version < LEAST_WASM_OPT) {
-        let found = version.map_or("none".to_owned(), |version| version.to_string());
-        eprintln!(
-            "xtask: expected wasm-opt {LEAST_WASM_OPT} or later (npm's package binaryen), found {found}; the module stays larger"
-        );
-        return Ok(());
-    }
-    let small = wasm.with_extension("small");
-    let features =
-        ["bulk-memory", "mutable-globals", "sign-ext", "nontrapping-float-to-int", "reference-types"];
-    let mut shrink = workspace.command("wasm-opt");
-    // No fast arithmetic: the bits are the point.
-    shrink.args(["-O2", "--strip-debug"]).args(features.map(|name| format!("--enable-{name}")));
-    shrink.arg(wasm).arg("-o").arg(&small);
-    run_command(&mut shrink)?;
-    fs::rename(&small, wasm).with_context(|| format!("replace {}", wasm.display()))
-}
-
 /// Writes the page: every file but `index.html` has a hash of its contents in its name.
 fn lay_out(workspace: &Workspace, bound: &Path, folder: &Path) -> Result<()> {
     let root = workspace.root();
@@ -124,6 +104,8 @@ fn lay_out(workspace: &Workspace, bound: &Path, folder: &Path) -> Result<()> {
             Sha256::digest(&bytes).iter().take(8).map(|byte| format!("{byte:02x}")).collect();
         let name = format!("{stem}.{digest}.{ending}");
         fs::write(folder.join(&name), &bytes).with_context(|| format!("write {name}"))?;
+        let zipped = folder.join(format!("{name}.gz"));
+        compress(&bytes, &zipped).with_context(|| format!("write {}", zipped.display()))?;
         Ok(json!({"path": format!("./{name}"), "bytes": bytes.len()}))
     };
     files.insert("code".into(), put(&bound.join(format!("{MODULE}.js")), "policy-space", "js")?);
@@ -131,28 +113,46 @@ fn lay_out(workspace: &Workspace, bound: &Path, folder: &Path) -> Result<()> {
     files.insert("pack".into(), put(&root.join("assets/humanoid.pack.safetensors"), "humanoid", "pack")?);
     files.insert("mesh".into(), put(&root.join("assets/humanoid.glb"), "humanoid", "glb")?);
     let page = root.join("web/page");
-    let script = put(&page.join("page.js"), "page", "js")?;
+    let joined = bound.join("page.js");
+    fs::write(&joined, script(&page)?).with_context(|| format!("write {}", joined.display()))?;
+    let script = put(&joined, "page", "js")?;
     let style = put(&page.join("style.css"), "style", "css")?;
     let path = |file: &Value| file["path"].as_str().unwrap_or_default().to_owned();
     let template = page.join("index.html");
     let html = fs::read_to_string(&template).with_context(|| format!("read {}", template.display()))?;
-    let html = html
-        .replace("\"STYLE\"", &format!("\"{}\"", path(&style)))
-        .replace("\"PAGE\"", &format!("\"{}\"", path(&script)))
-        .replace(">FILES<", &format!(">{}<", Value::Object(files)));
+    let paths = [
+        ("STYLE", path(&style)),
+        ("PAGE", path(&script)),
+        ("CODE", path(&files["code"])),
+        ("WASM", path(&files["wasm"])),
+        ("PACK", path(&files["pack"])),
+        ("MESH", path(&files["mesh"])),
+    ];
+    let html = paths
+        .iter()
+        .fold(html, |html, (word, path)| html.replace(&format!("\"{word}\""), &format!("\"{path}\"")));
+    let html = html.replace(">FILES<", &format!(">{}<", Value::Object(files)));
     fs::write(folder.join("index.html"), html).context("write index.html")
+}
+
+/// The scripts of the page as one.
+fn script(page: &Path) -> Result<String> {
+    SCRIPTS.iter().try_fold(String::new(), |text, name| {
+        let path = page.join(name);
+        Ok(text + &fs::read_to_string(&path).with_context(|| format!("read {}", path.display()))?)
+    })
+}
+
+/// For servers that send compressed files as they lie there: compressing five megabytes for each visit takes a second.
+fn compress(bytes: &[u8], path: &Path) -> std::io::Result<()> {
+    let mut encoder = GzEncoder::new(fs::File::create(path)?, Compression::best());
+    encoder.write_all(bytes)?;
+    encoder.finish().map(|_| ())
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn the_version_of_wasm_opt_is_read() {
-        assert_eq!(wasm_opt_version("wasm-opt version 108"), Some(108));
-        assert_eq!(wasm_opt_version("wasm-opt version 132 (version_132)"), Some(132));
-        assert_eq!(wasm_opt_version(""), None);
-    }
 
     #[test]
     fn the_version_of_the_binding_generator_is_read() {

@@ -3,8 +3,11 @@
 mod browser;
 mod build;
 mod check;
+mod graphics;
 mod http;
+mod manners;
 mod server;
+mod shrink;
 
 use std::path::PathBuf;
 
@@ -17,7 +20,7 @@ use crate::workspace::Workspace;
 /// Arguments of `cargo xtask web`.
 #[derive(Debug, Args)]
 pub struct WebArgs {
-    /// Make the module small with wasm-opt, where there is one. Takes a minute more.
+    /// Make the module small with wasm-opt, or with that of npm's package binaryen. Takes a minute more.
     #[arg(long)]
     release: bool,
     /// Only write out/web.

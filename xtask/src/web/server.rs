@@ -1,6 +1,7 @@
 //! A static server for one folder, on this machine only: GET and HEAD, compressed, with cache headers.
 //!
-//! Names with a hash in them never change; `index.html` is fetched again each time.
+//! Names with a hash in them never change; `index.html` is fetched again each time. What has a file `NAME.gz` beside it is
+//! sent from there to whoever takes gzip. A connection serves one request, in a thread of its own, so that none waits for another.
 
 use std::fs;
 use std::io::{self, BufRead as _, BufReader, Read as _, Write as _};
@@ -12,8 +13,6 @@ use std::thread::{self, JoinHandle};
 use std::time::Duration;
 
 use anyhow::{Context, Result};
-use flate2::Compression;
-use flate2::write::GzEncoder;
 
 /// Longest request, bytes.
 const LONGEST_REQUEST: u64 = 16 << 10;
@@ -85,7 +84,9 @@ fn answer(stream: &TcpStream, folder: &Path) -> io::Result<u64> {
         return respond(stream, "400 Bad Request", "text/plain", "", b"expected GET of a file", method)
             .map(|()| 0);
     };
-    let Ok(mut body) = fs::read(folder.join(name)) else {
+    let zipped = compressed.then(|| fs::read(folder.join(format!("{name}.gz"))).ok()).flatten();
+    let is_zipped = zipped.is_some();
+    let Some(body) = zipped.or_else(|| fs::read(folder.join(name)).ok()) else {
         return respond(stream, "404 Not Found", "text/plain", "", b"no such file", method).map(|()| 0);
     };
     let mut more = if name == "index.html" {
@@ -93,11 +94,9 @@ fn answer(stream: &TcpStream, folder: &Path) -> io::Result<u64> {
     } else {
         "Cache-Control: public, max-age=31536000, immutable\r\n".to_owned()
     };
-    if compressed {
-        let mut encoder = GzEncoder::new(Vec::new(), Compression::default());
-        encoder.write_all(&body)?;
-        body = encoder.finish()?;
-        more += "Content-Encoding: gzip\r\nVary: Accept-Encoding\r\n";
+    more += "Vary: Accept-Encoding\r\n";
+    if is_zipped {
+        more += "Content-Encoding: gzip\r\n";
     }
     respond(stream, "200 OK", kind(name), &more, &body, method)?;
     Ok(body.len() as u64)
@@ -162,6 +161,7 @@ mod tests {
         let folder = ScratchFolder::new("server");
         fs::write(folder.path().join("index.html"), "<p>").unwrap();
         fs::write(folder.path().join("a.0123.wasm"), "wasm").unwrap();
+        fs::write(folder.path().join("a.0123.wasm.gz"), "zipped").unwrap();
         let server = Server::start(folder.path().to_path_buf(), 0).unwrap();
         let page = ask(&server, "GET /?input=script HTTP/1.1\r\n\r\n");
         assert!(
@@ -171,7 +171,8 @@ mod tests {
         let wasm = ask(&server, "GET /a.0123.wasm HTTP/1.1\r\n\r\n");
         assert!(wasm.contains("application/wasm") && wasm.contains("immutable"), "{wasm}");
         let zipped = ask(&server, "GET /a.0123.wasm HTTP/1.1\r\nAccept-Encoding: gzip, br\r\n\r\n");
-        assert!(zipped.contains("Content-Encoding: gzip") && !zipped.ends_with("wasm"), "{zipped}");
+        assert!(zipped.contains("Content-Encoding: gzip") && zipped.ends_with("zipped"), "{zipped}");
+        assert!(wasm.ends_with("wasm") && !wasm.contains("Content-Encoding"), "{wasm}");
         for bad in ["GET /../Cargo.toml", "GET /a/b", "POST /", "GET /%2e%2e", "", "\u{0}"] {
             assert!(ask(&server, &format!("{bad} HTTP/1.1\r\n\r\n")).starts_with("HTTP/1.1 400"), "{bad}");
         }

@@ -53,6 +53,7 @@ pub use pick::Grab;
 pub use place::place;
 pub use plots::{Plots, Series};
 pub use preferences::{Preferences, Quality};
+pub use replay::ReplayLine;
 pub use toasts::{Toast, ToastKind, Toasts};
 pub use tour::{IDLE_SECS, Tour};
 
@@ -153,6 +154,8 @@ pub struct App {
     pub dropped: Option<std::path::PathBuf>,
     /// Records the pad, or plays a replay.
     pub replaying: Replaying,
+    /// The file of that, and how it ended.
+    pub replay_line: ReplayLine,
     /// Why recording or playing ended before its time.
     pub replay_stopped: Option<ReplayingError>,
     analysis_soon: Option<Receiver<Analysis>>,
@@ -202,6 +205,7 @@ impl App {
             put_right: 0,
             dropped: None,
             replaying: Replaying::Off,
+            replay_line: ReplayLine::default(),
             replay_stopped: None,
             analysis_soon: None,
         }

@@ -6,7 +6,7 @@ use anyhow::{Context as _, bail};
 use replay::{MOST_BYTES, Playback, Recorder, Replay, StateHash};
 
 use super::{Demo, load};
-use crate::app::App;
+use crate::app::{App, ReplayLine};
 use crate::files;
 use crate::replays::{Replaying, Setting};
 
@@ -42,6 +42,9 @@ pub fn begin(demo: &Demo, replay: Option<&Replay>, app: &mut App) -> anyhow::Res
     }
     let pack_hash = StateHash::of(&load::pack_bytes(demo.character.as_deref())?);
     let header = Setting::of(&app.sim).header(&app.sim, pack_hash);
+    let path = demo.replay.as_deref().or(demo.record_replay.as_deref());
+    let name = path.and_then(Path::file_name).unwrap_or_default().to_string_lossy();
+    app.replay_line = ReplayLine { name: name.into_owned(), ended: None };
     app.replaying = match replay {
         Some(replay) => {
             header.expect(replay.header())?;

@@ -4,6 +4,7 @@ use egui::{Align2, Color32, Rect, RichText, Sense, Stroke, Ui, vec2};
 
 use super::{PRESENT, frame};
 use crate::app::{App, FirstStep, ViewerCommand};
+use crate::replays::Replaying;
 
 /// Side of a tick, points.
 const TICK: f32 = 14.0;
@@ -12,7 +13,8 @@ pub(super) fn show(ui: &Ui, app: &App, free: Rect, commands: &mut Vec<ViewerComm
     if app.tour.is_playing() {
         return tour(ui, free);
     }
-    if !app.layout.preferences.shows_first_steps || app.sim.playback().is_some() {
+    let is_replay = matches!(app.replaying, Replaying::Playing(_));
+    if !app.layout.preferences.shows_first_steps || app.sim.playback().is_some() || is_replay {
         return;
     }
     // In the playground the line of its course is above.

@@ -15,6 +15,7 @@ mod preferences;
 mod profiler;
 mod race;
 mod record;
+mod replay;
 mod simple;
 mod skills;
 mod toasts;
@@ -54,6 +55,7 @@ pub(crate) fn show(ui: &mut Ui, app: &App, commands: &mut Vec<ViewerCommand>) ->
         first_steps::show(ui, app, free, commands);
     }
     race::show(ui, app, free);
+    replay::show(ui, app, free);
     toasts::show(ui, app, free, commands);
     if app.help {
         help::show(ui, app, commands);

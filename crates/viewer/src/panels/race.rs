@@ -36,7 +36,7 @@ pub(super) fn show(ui: &Ui, app: &App, free: egui::Rect) {
 }
 
 /// Minutes, seconds and tenths.
-fn minutes(secs: f32) -> String {
+pub(super) fn minutes(secs: f32) -> String {
     let tenths = (secs * 10.0).round() as u32;
     format!("{}:{:02}.{}", tenths / 600, tenths / 10 % 60, tenths % 10)
 }

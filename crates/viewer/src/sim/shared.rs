@@ -16,8 +16,9 @@ use policy_core::{BodyId, Heading};
 
 use super::rewind::Ring;
 use super::{SimError, SteeredCharacter};
-pub use loose::{LooseKind, MOST_BALLS};
+pub use loose::MOST_BALLS;
 pub use pieces::Piece;
+pub use playground::LooseKind;
 use playground::{Playground, Race, RaceEvent, Wanderer};
 
 /// What the mouse can hold.

@@ -1,55 +1,13 @@
 //! Balls that are thrown and props that are put there: a bounded number of each; the oldest makes room.
 
 use glam::Vec3;
-use physics_bridge::{Motion, Prop, Solid, WorldEdit, WorldError};
+use physics_bridge::{Motion, WorldEdit, WorldError};
+use playground::LooseKind;
 
 use super::{Piece, SharedWorld};
-use playground::Paint;
 
 /// Most balls at a time.
-pub const MOST_BALLS: usize = 24;
-/// Most of each other kind at a time.
-const MOST_OTHERS: usize = 4;
-
-/// What can be thrown or put somewhere.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum LooseKind {
-    /// A ball of 3 kg to throw.
-    Ball,
-    /// A crate.
-    Crate,
-    /// A barrel.
-    Barrel,
-    /// A large, light ball.
-    BeachBall,
-    /// A log.
-    Log,
-}
-
-impl LooseKind {
-    const ALL: [Self; 5] = [Self::Ball, Self::Crate, Self::Barrel, Self::BeachBall, Self::Log];
-    /// Those that are put somewhere, in turn.
-    const SPAWNED: [Self; 4] = [Self::Crate, Self::Barrel, Self::BeachBall, Self::Log];
-
-    const fn most(self) -> usize {
-        match self {
-            Self::Ball => MOST_BALLS,
-            _ => MOST_OTHERS,
-        }
-    }
-
-    fn prop(self) -> (Prop, Paint) {
-        match self {
-            Self::Ball => (Prop::ball(0.11, 3.0), Paint::Violet),
-            Self::Crate => (Prop::cube(0.5, 5.0), Paint::Wood),
-            Self::Barrel => {
-                (Prop::new(Solid::Cylinder { radius: 0.25, half_length: 0.35 }, 8.0), Paint::Blue)
-            }
-            Self::BeachBall => (Prop::ball(0.35, 1.0), Paint::Orange),
-            Self::Log => (Prop::new(Solid::Capsule { radius: 0.12, half_length: 0.5 }, 6.0), Paint::Green),
-        }
-    }
-}
+pub const MOST_BALLS: usize = LooseKind::Ball.most();
 
 /// Keeps all of them ready: a throw must not build the simulation anew.
 pub(super) fn reserve(edit: &mut WorldEdit<'_>) -> Result<(), WorldError> {
@@ -85,7 +43,7 @@ impl SharedWorld {
     /// # Errors
     /// As [`SharedWorld::add_loose`].
     pub fn spawn(&mut self, at: Vec3) -> Result<(), WorldError> {
-        let kind = LooseKind::SPAWNED[self.state.spawned as usize % LooseKind::SPAWNED.len()];
+        let kind = LooseKind::PUT[self.state.spawned as usize % LooseKind::PUT.len()];
         self.state.spawned += 1;
         self.add_loose(kind, Motion::at(at))
     }
