@@ -26,7 +26,7 @@ Without a window or a display, under a script of pad input:
 
   --no-install       only say which system packages are missing
   --headless         no window
-  --script FILE      pad input over time (headless)
+  --script FILE      pad input over time
   --seconds N        how long to simulate (headless)
   --report FILE      where the report goes, as JSON (headless)
   --frames DIR       where the pictures go (headless)
@@ -86,8 +86,11 @@ pub fn run(workspace: &Workspace, arguments: Vec<OsString>) -> Result<ExitCode> 
         std::fs::create_dir_all(&frames).with_context(|| format!("create {}", frames.display()))?;
     }
     let mut command = workspace.cargo();
-    command.args(["run", "--release", "-p", "viewer", "--bin", "policy-space", "--"]).args(request.arguments);
-    exit_code_of(&mut command)
+    command.args(["run", "--release", "-p", "viewer", "--bin", "policy-space"]);
+    if setup::has_sound() {
+        command.args(["--features", "sound"]);
+    }
+    exit_code_of(command.arg("--").args(request.arguments))
 }
 
 #[cfg(test)]

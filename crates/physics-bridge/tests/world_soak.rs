@@ -1,12 +1,15 @@
-//! A world that lives for a while: characters that flail, props thrown, pushed, grabbed, added and removed, and
-//! divergences provoked. Nothing that is well is put back, nothing grows, nothing ends the process.
+//! A world that lives for a while: characters under pads at random, some that flail, props thrown, pushed, grabbed, added and
+//! removed, and divergences provoked. Nothing that is well is put back, nothing grows, nothing ends the process.
 //!
 //! `SOAK_SECS` (default 20), `SOAK_CHARACTERS` (6), `SOAK_PROPS` (16) and `SOAK_DIVERGENCES` (60) size it. An hour of
-//! the real thing: `SOAK_SECS=3600 SOAK_CHARACTERS=50 SOAK_PROPS=100 SOAK_DIVERGENCES=10000`.
+//! the real thing: `SOAK_SECS=3600 SOAK_CHARACTERS=50 SOAK_PROPS=100 SOAK_DIVERGENCES=10000`. `SOAK_WALL_SECS` ends it after that
+//! time on the wall at the latest, with the divergences spread over what comes first.
 
 mod common;
 
 use std::collections::BTreeMap;
+use std::sync::Arc;
+use std::time::Instant;
 
 use common::humanoid;
 use glam::{Quat, Vec3};
@@ -14,7 +17,13 @@ use physics_bridge::{
     CharacterHandle, Diverging, Fixture, Joint, MAX_SPEED_MPS, Model, Motion, Movable, Prop, PropHandle,
     Solid, World, WorldError,
 };
-use policy_core::{BodyId, CharacterState, Heading, JointTargets};
+use policy_core::{
+    Bindings, BodyId, Button, Buttons, CharacterPack, CharacterState, CommandMapper, Controller,
+    GamepadState, Heading, JointTargets,
+};
+
+/// The pack whose controllers steer.
+const PACK: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../assets/humanoid.pack.safetensors");
 
 /// A sequence of numbers that is the same in every run.
 struct Random(u64);
@@ -49,11 +58,65 @@ fn resident_kb() -> Option<f64> {
     text.lines().find(|line| line.starts_with("VmRSS"))?.split_whitespace().nth(1)?.parse().ok()
 }
 
+/// What steers a character.
+struct Player {
+    character: CharacterHandle,
+    controller: Controller,
+    mapper: CommandMapper,
+    pad: GamepadState,
+    /// Ticks until the pad changes.
+    keeps: usize,
+    /// Targets at random instead of a pad.
+    flails: bool,
+}
+
+/// One in so many characters flails.
+const FLAILS: usize = 5;
+/// Lines of the report on memory.
+const LOOKS: usize = 20;
+
+impl Player {
+    fn new(pack: &Arc<CharacterPack>, character: CharacterHandle, flails: bool) -> Self {
+        Self {
+            character,
+            controller: Controller::new(Arc::clone(pack)),
+            mapper: CommandMapper::new(pack, &Bindings::default()),
+            pad: GamepadState::default(),
+            keeps: 0,
+            flails,
+        }
+    }
+
+    /// Targets for the next tick, from what was sensed.
+    fn targets(&mut self, state: &CharacterState, dt_secs: f32, random: &mut Random) -> &[f32] {
+        if self.keeps == 0 {
+            self.keeps = 10 + random.below(80);
+            self.pad = pad_at_random(random);
+        }
+        self.keeps -= 1;
+        let command = self.mapper.map(&self.pad, Heading::FORWARD, state);
+        self.controller.tick(state, &command, dt_secs)
+    }
+}
+
+fn pad_at_random(random: &mut Random) -> GamepadState {
+    let mut trigger = || if random.below(2) == 0 { 0.0 } else { random.unit() };
+    let (left_trigger, right_trigger) = (trigger(), trigger());
+    let mut buttons = Buttons::NONE;
+    for button in [Button::South, Button::East, Button::RightShoulder, Button::RightStick] {
+        buttons.set(button, random.below(6) == 0);
+    }
+    let left_stick = [random.between(-1.0, 1.0), random.between(-1.0, 1.0)];
+    GamepadState { left_stick, left_trigger, right_trigger, buttons, ..GamepadState::default() }
+}
+
 struct Soak {
     world: World,
     model: Model,
     random: Random,
     characters: Vec<CharacterHandle>,
+    players: Vec<Player>,
+    state: CharacterState,
     props: Vec<PropHandle>,
     /// What was provoked in this tick.
     provoked: Vec<Diverging>,
@@ -71,7 +134,8 @@ fn prop(random: &mut Random) -> Prop {
 
 impl Soak {
     fn new(characters: usize, props: usize) -> Self {
-        let model = humanoid();
+        let pack = Arc::new(CharacterPack::from_bytes(&std::fs::read(PACK).unwrap()).unwrap());
+        let model = Model::for_pack(&pack).unwrap();
         let mut world = World::new(&model).unwrap();
         let mut random = Random(7);
         let reach = 1.0 + (characters as f32).sqrt();
@@ -96,17 +160,26 @@ impl Soak {
                 Ok((characters, props))
             })
             .unwrap();
-        let reports = BTreeMap::new();
-        Self { world, model, random, characters, props, provoked: Vec::new(), reports }
+        let player = |(index, &character)| Player::new(&pack, character, index % FLAILS == FLAILS - 1);
+        let players = characters.iter().enumerate().map(player).collect();
+        let state = CharacterState::new(model.skeleton());
+        let (provoked, reports) = (Vec::new(), BTreeMap::new());
+        Self { world, model, random, characters, players, state, props, provoked, reports }
     }
 
     /// Targets for all, and at times something from outside.
     fn play(&mut self) -> Result<(), WorldError> {
         let random = &mut self.random;
         let mut targets = JointTargets::new(self.model.skeleton());
-        for &character in &self.characters {
-            targets.iter_mut().for_each(|target| *target = random.between(-0.6, 0.6));
-            self.world.actuate(character, &targets)?;
+        let dt_secs = 1.0 / self.model.control_hz();
+        for player in &mut self.players {
+            if player.flails {
+                targets.iter_mut().for_each(|target| *target = random.between(-0.6, 0.6));
+                self.world.actuate(player.character, &targets)?;
+            } else {
+                self.world.sense_into(player.character, &mut self.state)?;
+                self.world.actuate(player.character, player.targets(&self.state, dt_secs, random))?;
+            }
         }
         let who = self.characters[random.below(self.characters.len())];
         let what = self.props[random.below(self.props.len())];
@@ -203,6 +276,9 @@ impl Soak {
                 "it was well: {divergence:?}, provoked {:?}",
                 self.provoked
             );
+            for player in self.players.iter_mut().filter(|p| what == Diverging::Character(p.character)) {
+                player.controller.reset();
+            }
             assert_eq!(told.iter().filter(|other| other.what == Some(what)).count(), 1, "{told:?}");
             *self.reports.entry(format!("{:?}, {:?}", divergence.cause, divergence.remedy)).or_default() += 1;
         }
@@ -230,18 +306,33 @@ fn a_world_lives() {
     let mut soak = Soak::new(size("SOAK_CHARACTERS", 6), size("SOAK_PROPS", 16));
     let mut early = None;
     let mut provoked = 0;
+    let (start, wall_secs) = (Instant::now(), size("SOAK_WALL_SECS", usize::MAX) as f64);
+    let (mut told, mut ran) = (0, 0);
     for tick in 0..ticks {
+        let done = (tick as f64 / ticks as f64).max(start.elapsed().as_secs_f64() / wall_secs);
+        if done >= 1.0 {
+            break;
+        }
+        ran = tick + 1;
         soak.play().unwrap();
-        if provoked * ticks < divergences * tick {
+        if (provoked as f64) < done * divergences as f64 {
             soak.provoke().unwrap();
             provoked += 1;
         }
         soak.step();
-        if tick == ticks / 3 {
+        if done * LOOKS as f64 >= told as f64 {
+            told += 1;
+            let (minute, wall) = (tick as f32 / 1800.0, start.elapsed().as_secs_f32() / 60.0);
+            println!(
+                "minute {minute:.1}, after {wall:.1} on the wall: {provoked} provoked, {:?} kB",
+                resident_kb()
+            );
+        }
+        if early.is_none() && done >= 1.0 / 3.0 {
             early = resident_kb();
         }
     }
-    println!("{provoked} divergences in {ticks} ticks: {:#?}", soak.reports);
+    println!("{provoked} divergences in {ran} ticks: {:#?}", soak.reports);
     println!("resident memory {early:?} kB, at the end {:?} kB", resident_kb());
     if let (Some(early), Some(late)) = (early, resident_kb()) {
         assert!(late < 1.3 * early + 20_000.0, "memory is flat: {early} kB, then {late} kB");

@@ -213,6 +213,15 @@ impl Camera {
         }
     }
 
+    /// Who hears at the eye.
+    #[cfg(feature = "native")]
+    #[must_use]
+    pub fn listener(&self) -> crate::sound::Listener {
+        let view = self.view(0.0);
+        let right = (view.target - view.eye).cross(Vec3::Z).normalize_or(Vec3::NEG_Y);
+        crate::sound::Listener { at: view.eye, right }
+    }
+
     /// The picture's view, turned by `around` radians about the character.
     #[must_use]
     pub fn view(&self, around: f32) -> View {

@@ -10,7 +10,7 @@ use crate::dropped::word_about;
 use crate::gpu::{Gpu, GpuError};
 use crate::overlay::{Overlay, Prepared};
 use crate::recorder::{self, Kind, Recorder};
-use crate::render::{Appearance, OffScreen, RenderConfig, Renderer, Scene};
+use crate::render::{Appearance, OffScreen, Part, RenderConfig, Renderer, Scene};
 use crate::scene_setup::ground_grid;
 use crate::text::counted;
 
@@ -122,8 +122,8 @@ impl FrameComposer {
         size: [u32; 2],
     ) {
         let mut prepared = self.prepare(app, output);
+        self.paint(app, view, size);
         let mut encoder = self.gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
-        self.renderer.draw(&mut encoder, view, size, &self.scene);
         self.overlay.draw(&mut encoder, view, size, &prepared);
         self.gpu.queue.submit([encoder.finish()]);
         // A lost device often shows here: it takes no more pictures.
@@ -149,7 +149,7 @@ impl FrameComposer {
             return Err(GpuError::Lost);
         }
         let mut prepared = self.prepare(app, output);
-        let picture = self.capture(size, panels.then_some(&prepared));
+        let picture = self.capture(app, size, panels.then_some(&prepared));
         self.overlay.free(&mut prepared);
         picture
     }
@@ -168,16 +168,43 @@ impl FrameComposer {
             self.renderer.set_ground(grid.as_ref());
             app.ground_changed = false;
         }
-        app.set_scene(&mut self.scene, self.around);
         let mut prepared = Prepared::new(&self.context, output);
         self.overlay.upload(&mut prepared);
         prepared
     }
 
-    fn capture(&mut self, size: [u32; 2], prepared: Option<&Prepared>) -> Result<RgbaImage, GpuError> {
+    /// Draws the picture of every view into its part of `view` and sends them off.
+    fn paint(&mut self, app: &App, view: &wgpu::TextureView, size: [u32; 2]) {
+        let scale = self.context.pixels_per_point();
+        let screen =
+            egui::Rect::from_min_size(egui::Pos2::ZERO, egui::vec2(size[0] as f32, size[1] as f32) / scale);
+        let views = app.views();
+        for index in 0..views {
+            app.set_scene(&mut self.scene, self.around, index);
+            let part = app.part(index, screen);
+            let [left, right] =
+                [part.left(), part.right()].map(|x| ((x * scale).round() as u32).min(size[0]));
+            let part = if views == 1 {
+                Part::whole(size)
+            } else {
+                Part { left, width: right - left, first: index == 0, last: index + 1 == views }
+            };
+            let mut encoder =
+                self.gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
+            self.renderer.draw_part(&mut encoder, view, (size, part), &self.scene);
+            self.gpu.queue.submit([encoder.finish()]);
+        }
+    }
+
+    fn capture(
+        &mut self,
+        app: &App,
+        size: [u32; 2],
+        prepared: Option<&Prepared>,
+    ) -> Result<RgbaImage, GpuError> {
         let target = OffScreen::with_format(&self.gpu, size, self.format);
+        self.paint(app, target.view(), size);
         let mut encoder = self.gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
-        self.renderer.draw(&mut encoder, target.view(), size, &self.scene);
         if let Some(prepared) = prepared {
             self.overlay.draw(&mut encoder, target.view(), size, prepared);
         }
@@ -190,7 +217,7 @@ impl FrameComposer {
         match app.record.take() {
             Some(Record::Screenshot) => {
                 let path = name("png");
-                let saved = self.capture(size, Some(prepared)).map_err(|e| e.to_string());
+                let saved = self.capture(app, size, Some(prepared)).map_err(|e| e.to_string());
                 let saved = saved.and_then(|p| recorder::save(&p, &path).map_err(|e| e.to_string()));
                 match saved {
                     Ok(()) => app.toasts.note(format!("wrote {}", path.display())),
@@ -207,7 +234,7 @@ impl FrameComposer {
         if due < *taken {
             return;
         }
-        let picture = self.capture(size, Some(prepared));
+        let picture = self.capture(app, size, Some(prepared));
         let Some((recorder, _, taken)) = &mut self.recorder else { return };
         *taken = due + 1;
         if !picture.is_ok_and(|p| recorder.take(p, due as u32)) {

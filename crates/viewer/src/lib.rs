@@ -13,6 +13,8 @@ pub mod appearance;
 pub mod assets;
 #[cfg(feature = "native")]
 pub mod best_time;
+#[cfg(feature = "native")]
+mod breath;
 pub mod camera;
 #[cfg(feature = "native")]
 pub mod cli;
@@ -22,6 +24,7 @@ pub mod files;
 #[cfg(feature = "native")]
 pub mod frame_composer;
 pub mod gpu;
+pub mod landmarks;
 #[cfg(feature = "native")]
 pub mod mannequin;
 pub mod mesh;
@@ -44,6 +47,8 @@ pub mod scene_setup;
 pub mod signals;
 #[cfg(feature = "native")]
 pub mod sim;
+#[cfg(feature = "native")]
+pub mod sound;
 #[cfg(feature = "native")]
 pub mod text;
 pub mod things;

@@ -5,10 +5,10 @@ use std::collections::VecDeque;
 use glam::{Mat4, Quat, Vec2, Vec3};
 use physics_bridge::{BodyPoses, HeightField, ShapeKind};
 
-use crate::camera::Camera;
-use crate::render::{Figure, GroundGrid, Marker, Scene, Solid};
+use crate::render::{Figure, GroundGrid, Marker, Scene, Solid, View};
 use crate::sim::Simulation;
 use crate::things::{self, ring};
+use crate::{breath, landmarks};
 
 /// What is shown besides the characters.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
@@ -95,22 +95,33 @@ impl Trail {
     }
 }
 
-/// Sets the scene for a picture `alpha` of the way from the last tick but one to the last, by a camera that
-/// stands `around` radians about the player from where it steers.
-pub fn set_scene(
-    scene: &mut Scene,
-    sim: &Simulation,
-    camera: &Camera,
-    around: f32,
-    (alpha, shown, trail): (f32, &Shown, &Trail),
-) {
-    scene.view = camera.view(around);
-    scene.focus = scene.view.target.with_z(sim.player().state.ground_height);
+/// What a picture is to show.
+#[derive(Clone, Copy, Debug)]
+pub struct Picture<'a> {
+    /// Where it is taken from.
+    pub view: View,
+    /// Only this character; `None` shows all.
+    pub alone: Option<usize>,
+    /// How far it is from the last tick but one to the last, 0 to 1.
+    pub alpha: f32,
+    /// What is shown besides the characters.
+    pub shown: &'a Shown,
+    /// The way the player has walked.
+    pub trail: &'a Trail,
+}
+
+/// Sets the scene for a picture.
+pub fn set_scene(scene: &mut Scene, sim: &Simulation, picture: &Picture<'_>) {
+    let &Picture { view, alone, alpha, shown, trail } = picture;
+    let who = alone.unwrap_or(0);
+    scene.view = view;
+    scene.focus = scene.view.target.with_z(sim.characters()[who].state.ground_height);
     scene.figures.clear();
     scene.markers.clear();
     scene.things.clear();
     scene.ribbons.clear();
     scene.hide_figures = shown.collision_shapes;
+    landmarks::posts(scene, scene.focus.truncate(), |at| sim.height_at(at, 0.0));
     if let Some(shared) = sim.shared() {
         things::fixtures(scene, shared.scene());
         for piece in shared.pieces() {
@@ -118,8 +129,8 @@ pub fn set_scene(
         }
         things::checkpoints(scene, shared.scene(), shared.race());
     }
-    for index in 0..sim.characters().len() {
-        let figure = figure(sim, sim.poses(index, alpha), tint(index));
+    for index in (0..sim.characters().len()).filter(|index| alone.is_none_or(|who| who == *index)) {
+        let figure = figure(sim, drawn_poses(sim, index, alpha), tint(index));
         if shown.collision_shapes {
             collision_shapes(scene, sim, &figure, [0.85, 0.62, 0.25, 1.0]);
         }
@@ -134,25 +145,37 @@ pub fn set_scene(
         }
         scene.figures.push(figure);
     }
-    if shown.trail {
+    if shown.trail && who == 0 {
         trail.draw(scene);
     }
     if shown.target {
-        target(scene, sim);
+        target(scene, sim, who);
     }
     if shown.contact_forces {
-        for contact in sim.ground_contacts(0) {
+        for contact in sim.ground_contacts(who) {
             let tip = contact.position + contact.force * 0.0012;
             scene.arrow(contact.position, tip, 0.012, [0.15, 0.75, 0.35, 1.0]);
         }
     }
     if shown.centre_of_mass {
-        let centre = sim.centre_of_mass(0);
+        let centre = sim.centre_of_mass(who);
         let ground = sim.height_at(centre.truncate(), centre.z) + 0.015;
         scene.ball(centre, 0.045, [0.9, 0.15, 0.2, 1.0]);
         scene.line(centre, centre.with_z(ground), 0.008, [[0.9, 0.15, 0.2, 0.8]; 2]);
         ring(scene, centre.with_z(ground), 0.06, [0.9, 0.15, 0.2, 1.0]);
     }
+}
+
+/// Poses of a character as they are drawn: one that stands breathes.
+fn drawn_poses(sim: &Simulation, index: usize, alpha: f32) -> BodyPoses {
+    let (character, mut poses) = (&sim.characters()[index], sim.poses(index, alpha));
+    if sim.playback().is_none() && !character.is_down() && character.report().skill.is_none() {
+        let secs = (sim.ticks() as f32 + alpha) * sim.tick_secs();
+        // Not all at once.
+        let secs = secs + 1.3 * index as f32;
+        breath::breathe(&mut poses, sim.pack().skeleton(), secs, breath::share_at(character.speed()));
+    }
+    poses
 }
 
 fn figure(sim: &Simulation, poses: BodyPoses, tint: [f32; 4]) -> Figure {
@@ -184,9 +207,10 @@ fn tint(index: usize) -> [f32; 4] {
     [r, g, b, if index == 0 { 0.0 } else { 0.7 }]
 }
 
-fn target(scene: &mut Scene, sim: &Simulation) {
-    let Some(at) = sim.player().command.target.filter(|t| t.is_finite()) else { return };
-    let below = sim.player().state.root().position.z + 0.5;
+fn target(scene: &mut Scene, sim: &Simulation, who: usize) {
+    let character = &sim.characters()[who];
+    let Some(at) = character.command.target.filter(|t| t.is_finite()) else { return };
+    let below = character.state.root().position.z + 0.5;
     let ground = at.extend(sim.height_at(at, below) + 0.015);
     ring(scene, ground, 0.16, TARGET_COLOUR);
     ring(scene, ground, 0.05, TARGET_COLOUR);

@@ -11,12 +11,14 @@ use winit::event_loop::{ActiveEventLoop, ControlFlow, EventLoop};
 use winit::window::{Window, WindowId};
 
 use crate::app::{App, KeptLayout};
+use crate::cli::pad_input::PadInput;
 use crate::cli::{Demo, replay_files};
 use crate::frame_composer::FrameComposer;
 use crate::gpu::{Gpu, GpuError};
 use crate::pads::Pads;
 use crate::render::Appearance;
 use crate::signals;
+use crate::sound::Speaker;
 
 /// A device that is lost twice within this time will be lost again.
 const LOSSES_APART: Duration = Duration::from_secs(10);
@@ -31,14 +33,17 @@ const LEAST_SIZE: [u32; 2] = [800, 500];
 pub fn run(demo: &Demo, app: App, appearance: Appearance, layout: Option<PathBuf>) -> anyhow::Result<()> {
     let events = EventLoop::new().context("no display: set DISPLAY or WAYLAND_DISPLAY, or use --headless")?;
     events.set_control_flow(ControlFlow::Poll);
-    let pads = if demo.no_pad { None } else { Some(Pads::start()) };
+    let scripted = Scripted::load(demo)?;
+    let pads = if demo.no_pad || scripted.is_some() { None } else { Some(Pads::start()) };
     let mut host = Host {
         pads,
+        scripted,
         layout: layout.map(|path| KeptLayout::new(path, &app.layout)),
         app,
         appearance: Some(appearance),
         size: demo.size,
         trace: demo.trace,
+        speaker: Speaker::start(),
         window: None,
         lost: None,
         failed: None,
@@ -54,14 +59,37 @@ pub fn run(demo: &Demo, app: App, appearance: Appearance, layout: Option<PathBuf
     host.failed.map_or(Ok(()), Err)
 }
 
+/// Pads that the command line gives instead of devices, in the time of the world.
+struct Scripted {
+    first: PadInput,
+    second: Option<PadInput>,
+}
+
+impl Scripted {
+    fn load(demo: &Demo) -> anyhow::Result<Option<Self>> {
+        let (first, second) = (PadInput::load(demo)?, PadInput::load_second(demo)?);
+        Ok((first.is_given() || second.is_some()).then_some(Self { first, second }))
+    }
+
+    fn poll(&mut self, app: &mut App) {
+        let now = app.sim.ticks() as f64 * f64::from(app.sim.tick_secs());
+        let pad = self.first.state_at(now);
+        (app.pad.raw, app.pad.state) = (pad, pad);
+        app.pad.name = self.first.is_given().then(|| "a script".into());
+        app.pad.second = self.second.as_mut().map(|second| second.state_at(now));
+    }
+}
+
 /// What the event loop calls.
 struct Host {
     app: App,
     pads: Option<Pads>,
+    scripted: Option<Scripted>,
     layout: Option<KeptLayout>,
     appearance: Option<Appearance>,
     size: [u32; 2],
     trace: bool,
+    speaker: Speaker,
     window: Option<OpenWindow>,
     /// When the device was lost last.
     lost: Option<Instant>,
@@ -126,7 +154,12 @@ impl ApplicationHandler for Host {
                 if let Some(pads) = &mut self.pads {
                     pads.poll(&mut self.app.pad);
                 }
+                if let Some(scripted) = &mut self.scripted {
+                    scripted.poll(&mut self.app);
+                }
                 open.frame(&mut self.app, self.trace);
+                self.app.speaker = self.speaker.state();
+                self.speaker.play(self.app.ear.take(), self.app.layout.preferences.loudness());
                 if self.app.quit {
                     events.exit();
                 }

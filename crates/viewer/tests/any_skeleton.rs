@@ -43,7 +43,7 @@ fn without_a_mesh_its_collision_shapes_are_drawn() {
     let mut app = app;
     app.has_mesh = false;
     let mut scene = Scene::default();
-    app.set_scene(&mut scene, 0.7);
+    app.set_scene(&mut scene, 0.7, 0);
     assert!(scene.markers.len() >= app.sim.model().shapes().len());
     let Some(gpu) = gpu() else { return };
     let mut renderer = Renderer::new(&gpu, OffScreen::FORMAT, RenderConfig::for_adapter(true), looks);

@@ -8,7 +8,7 @@ use image::RgbaImage;
 use viewer::app::{App, PanelKind, PanelLayout, Quality, Side};
 use viewer::frame_composer::FrameComposer;
 use viewer::render::{Appearance, OffScreen, RenderConfig, Renderer, SHADERS, Scene};
-use viewer::scene_setup::{Shown, Trail, ground_grid, set_scene};
+use viewer::scene_setup::{Picture, Shown, Trail, ground_grid, set_scene};
 use viewer::sim::{GroundKind, SimConfig};
 
 const SIZE: [u32; 2] = [320, 240];
@@ -47,13 +47,18 @@ fn every_shader_passes_naga() {
     }
 }
 
+/// A picture from aside, of the last tick.
+fn shot<'a>(app: &App, shown: &'a Shown, trail: &'a Trail) -> Picture<'a> {
+    Picture { view: app.camera.view(0.7), alone: None, alpha: 1.0, shown, trail }
+}
+
 fn draw(gpu: &viewer::gpu::Gpu, app: &App, shown: &Shown) -> RgbaImage {
     let mut renderer =
         Renderer::new(gpu, OffScreen::FORMAT, RenderConfig::for_adapter(true), appearance(app));
     let model = app.sim.model();
     renderer.set_ground(ground_grid(model.height_field(), model.height_at(1e4, 1e4)).as_ref());
     let mut scene = Scene::default();
-    set_scene(&mut scene, &app.sim, &app.camera, 0.7, (1.0, shown, &Trail::default()));
+    set_scene(&mut scene, &app.sim, &shot(app, shown, &Trail::default()));
     renderer.picture(&OffScreen::new(gpu, SIZE), &scene).unwrap()
 }
 
@@ -145,7 +150,7 @@ fn a_lost_device_is_an_error_and_no_panic() {
     let mut renderer =
         Renderer::new(&gpu, OffScreen::FORMAT, RenderConfig::for_adapter(true), appearance(&app));
     let mut scene = Scene::default();
-    set_scene(&mut scene, &app.sim, &app.camera, 0.7, (1.0, &Shown::default(), &Trail::default()));
+    set_scene(&mut scene, &app.sim, &shot(&app, &Shown::default(), &Trail::default()));
     let target = OffScreen::new(&gpu, SIZE);
     assert!(renderer.picture(&target, &scene).is_ok() && gpu.lost().is_none());
     gpu.device.destroy();

@@ -105,6 +105,7 @@ const OWNED: &[Owned] = &[
     owned("rapier3d*", &["physics-rapier"], "only physics-rapier speaks to Rapier"),
     owned("hidapi", &["policy-space-gamepad"], "only gamepad speaks to devices"),
     owned("gilrs*", &["policy-space-gamepad"], "only gamepad speaks to devices"),
+    owned("cpal", &["viewer"], "only viewer plays sounds"),
     owned("wgpu*", &["viewer"], DRAWS),
     owned("winit", &["viewer"], DRAWS),
     owned("egui*", &["viewer"], DRAWS),

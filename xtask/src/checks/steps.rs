@@ -6,6 +6,7 @@ use std::process::Command;
 use anyhow::{Result, bail};
 
 use super::{Step, Verdict, bevy, c_interface, deny, imports, words};
+use crate::setup;
 use crate::workspace::{Workspace, answers, output_of, run};
 
 /// The checks that cargo-deny does.
@@ -36,6 +37,7 @@ pub const ALL: &[Step] = &[
     Step { name: "no_std: thumbv7em", run: |workspace| no_std(workspace, "thumbv7em-none-eabihf") },
     Step { name: "bits without vector units", run: plain_bits },
     Step { name: "clippy", run: clippy },
+    Step { name: "demo with sound", run: sound },
     Step { name: "page: wasm32", run: page },
     C_PROGRAM,
     Step { name: "engines/bevy: no window", run: bevy::check },
@@ -55,6 +57,19 @@ fn clippy(workspace: &Workspace) -> Result<Verdict> {
     Ok(Verdict::Passed)
 }
 
+/// The demo's feature `sound`, which no other check turns on: it needs the development files of ALSA.
+fn sound(workspace: &Workspace) -> Result<Verdict> {
+    if !setup::has_sound() {
+        return Ok(Verdict::Skipped(
+            "ALSA is not installed: apt-get install libasound2-dev pkg-config".into(),
+        ));
+    }
+    let of_demo = ["-p", "viewer", "--features", "sound", "--lib"];
+    run(workspace.cargo().arg("clippy").args(of_demo).args(["--", "-D", "warnings"]))?;
+    run(workspace.cargo().arg("test").args(of_demo).arg("sound::"))?;
+    Ok(Verdict::Passed)
+}
+
 /// The page's module, a workspace of its own. Playing it needs a browser: `cargo xtask web --check`.
 fn page(workspace: &Workspace) -> Result<Verdict> {
     const MANIFEST: &str = "web/Cargo.toml";
@@ -71,8 +86,18 @@ fn documentation(workspace: &Workspace) -> Result<Verdict> {
     Ok(Verdict::Passed)
 }
 
+/// All tests. Those in a real window must not be skipped where one can be opened.
 fn tests(workspace: &Workspace) -> Result<Verdict> {
-    run(workspace.cargo().args(["test", "--workspace", "--no-fail-fast"]))?;
+    let mut tests = workspace.cargo();
+    tests.args(["test", "--workspace", "--no-fail-fast"]);
+    if setup::has_window() {
+        tests.env("POLICY_SPACE_NEED_WINDOW", "1");
+    } else {
+        eprintln!(
+            "xtask: Xvfb, xdotool or a Vulkan driver is missing: the tests in a real window are skipped"
+        );
+    }
+    run(&mut tests)?;
     Ok(Verdict::Passed)
 }
 

@@ -15,7 +15,7 @@ use std::path::{Path, PathBuf};
 use anyhow::{Context, Result};
 
 pub use download::remove_folder;
-pub use packages::Purpose;
+pub use packages::{Purpose, has_sound, has_window};
 
 use self::library::Installation;
 use crate::workspace::Workspace;

@@ -25,7 +25,7 @@ const fn package(name: &'static str, needed_for: &'static str) -> Package {
 }
 
 /// What building, the demo and the tests need.
-const BASE: [Package; 10] = [
+const BASE: [Package; 12] = [
     package("gcc", "linking"),
     package("libc6-dev", "linking"),
     package("python3-pip", "fetching libmujoco"),
@@ -36,15 +36,16 @@ const BASE: [Package; 10] = [
     package("libxcursor1", "the window"),
     package("libxi6", "the window"),
     package("libxkbcommon-x11-0", "the window"),
+    package("pkg-config", "finding ALSA; the check of the C interface"),
+    package("libasound2-dev", "the demo's sounds; it is silent without"),
 ];
 
-/// What the tests use beyond that. Without the first two they skip something, with a message; without the others the check of
+/// What the tests use beyond that. Without the first two they skip something, with a message; without the other the check of
 /// the C interface fails.
-const TESTS: [Package; 4] = [
+const TESTS: [Package; 3] = [
     package("xvfb", "the tests in a real window"),
     package("xdotool", "the tests in a real window"),
     package("clang", "the check of the C interface"),
-    package("pkg-config", "the check of the C interface"),
 ];
 
 /// What the check of the page uses beyond the base.
@@ -131,9 +132,25 @@ fn works_without(package: &Package) -> bool {
         "gcc" => answers(Command::new("cc").arg("--version")),
         "python3-pip" => python_with_pip().is_some(),
         "chromium-driver" => answers(Command::new("chromedriver").arg("--version")),
+        "libasound2-dev" => has_alsa(),
         "chromium" | "clang" | "pkg-config" => answers(Command::new(package.name).arg("--version")),
         _ => false,
     }
+}
+
+/// Whether the demo builds with its feature `sound` here: on Linux it links ALSA.
+pub fn has_sound() -> bool {
+    if cfg!(target_os = "linux") { has_alsa() } else { cfg!(any(windows, target_os = "macos")) }
+}
+
+/// Whether the tests in a real window can run here: a display without a screen, keys and mouse, and something that draws.
+pub fn has_window() -> bool {
+    let there = |program: &str| answers(Command::new("which").arg(program));
+    cfg!(target_os = "linux") && there("Xvfb") && there("xdotool") && has_vulkan_loader()
+}
+
+fn has_alsa() -> bool {
+    answers(Command::new("pkg-config").args(["--exists", "alsa"]))
 }
 
 fn has_vulkan_loader() -> bool {

@@ -29,6 +29,7 @@ fn needs_a_simulation(command: &ViewerCommand) -> bool {
             | C::Layers(_)
             | C::Mode(_)
             | C::Ghost(_)
+            | C::Compare(_)
             | C::Skill(_)
             | C::Scrub(_)
             | C::StepBack
@@ -47,6 +48,10 @@ impl App {
     pub fn apply(&mut self, command: ViewerCommand) {
         if self.sim.playback().is_some() && needs_a_simulation(&command) {
             self.toasts.error("A clip is shown: there is nothing to steer and no physics.");
+            return;
+        }
+        if self.views() > 1 && matches!(command, ViewerCommand::Mode(_) | ViewerCommand::Ghost(Some(_))) {
+            self.toasts.error("Every blend mode has a view of its own: end the comparison first.");
             return;
         }
         match command {
@@ -75,6 +80,7 @@ impl App {
                 }
             }
             ViewerCommand::Ghost(None) => self.sim.stop_ghost(),
+            ViewerCommand::Compare(starts) => self.compare(starts),
             ViewerCommand::Skill(skill) => self.sim.overrides.skill = Some(skill),
             ViewerCommand::Camera(mode) => {
                 self.camera.set_mode(mode);
@@ -134,7 +140,7 @@ impl App {
             ViewerCommand::Throw { from, along } => self.throw(from, along),
             ViewerCommand::Spawn { from, along } => self.spawn(from, along),
             ViewerCommand::Characters(characters) => {
-                self.rebuild(SimConfig { characters, ..*self.sim.config() });
+                self.rebuild(SimConfig { characters, comparison: false, ..*self.sim.config() });
             }
             ViewerCommand::RewindAfterFailure => {
                 let (kept, _) = self.sim.history();
@@ -175,8 +181,8 @@ impl App {
     /// Begins anew in another scene, with as many characters as it usually has, on ground and in an engine that it
     /// allows.
     fn change_scene(&mut self, scene: SceneKind) {
-        let mut config = SimConfig { scene, ..*self.sim.config() };
-        if scene != self.sim.config().scene {
+        let mut config = SimConfig { scene, comparison: false, ..*self.sim.config() };
+        if scene != self.sim.config().scene || self.sim.config().comparison {
             config.characters = scene.usual_characters();
         }
         if scene == SceneKind::Playground {
@@ -212,7 +218,7 @@ impl App {
         self.grab = None;
     }
 
-    fn rebuild(&mut self, config: SimConfig) {
+    pub(super) fn rebuild(&mut self, config: SimConfig) {
         if config == *self.sim.config() {
             return;
         }

@@ -6,6 +6,10 @@ use super::App;
 use playground::RaceEvent;
 
 use crate::best_time::BestTime;
+use crate::sound::Sound;
+
+/// From one bell to the next, seconds.
+const BELLS_APART_SECS: f32 = 0.11;
 
 /// The best time over the course, and where it is kept.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -31,6 +35,16 @@ impl Best {
     }
 }
 
+/// The bells of what happened on the course: their pitches.
+fn bells(events: &[RaceEvent], is_best: bool) -> Option<&'static [f32]> {
+    Some(match events.last()? {
+        RaceEvent::Finished if is_best => &[1.0, 1.25, 1.5, 2.0],
+        RaceEvent::Finished => &[1.5, 1.25, 1.0],
+        RaceEvent::Started => &[1.0, 1.0],
+        RaceEvent::Passed => &[1.0, 1.5],
+    })
+}
+
 impl App {
     /// Takes what happened in a shared world during a tick: a new best time is kept at once, and what diverged is told.
     pub(super) fn follow_race(&mut self) {
@@ -52,7 +66,11 @@ impl App {
                 Err(error) => self.toasts.error(error.to_string()),
             }
         }
-        if events.contains(&RaceEvent::Finished) && run.beats(self.best.time) {
+        let is_best = events.contains(&RaceEvent::Finished) && run.beats(self.best.time);
+        if let Some(pitches) = bells(&events, is_best) {
+            self.ear.add(Sound::bells(pitches, BELLS_APART_SECS));
+        }
+        if is_best {
             self.best.time = Some(run);
             if let Some(Err(error)) = file.map(|path| run.save(&path)) {
                 self.toasts.error(error.to_string());

@@ -38,6 +38,8 @@ pub enum ViewerCommand {
     Mode(BlendMode),
     /// A second character under another mode or in another engine; `None` ends it.
     Ghost(Option<GhostKind>),
+    /// All blend modes in a split screen, or what was before.
+    Compare(bool),
     /// Start a skill.
     Skill(SkillId),
     /// Pause or continue.

@@ -7,6 +7,7 @@ mod apply;
 mod best;
 mod clock;
 mod command;
+mod comparison;
 mod first_steps;
 mod key_help;
 mod key_map;
@@ -34,14 +35,15 @@ use policy_core::GamepadState;
 use crate::analysis::Analysis;
 use crate::camera::Camera;
 use crate::panels;
-use crate::render::Scene;
 use crate::replays::{Replaying, ReplayingError};
-use crate::scene_setup::{Trail, set_scene};
+use crate::scene_setup::Trail;
 use crate::sim::{Divergence, Held, Playback, Simulation};
+use crate::sound::{Ear, SpeakerState};
 use crate::text::counted;
 pub use best::Best;
 pub use clock::Clock;
 pub use command::{Record, ViewerCommand};
+pub use comparison::Comparison;
 pub use first_steps::{Doing, FirstStep, FirstSteps};
 pub use key_help::{PAD, key_help};
 pub use key_map::{KeyAction, KeyMap};
@@ -150,6 +152,12 @@ pub struct App {
     pub best: Best,
     /// What diverged in a shared world and was put right, so far.
     pub put_right: usize,
+    /// What a comparison of blend modes needs besides the world.
+    pub comparison: Comparison,
+    /// Hears the world; the window plays what it heard.
+    pub ear: Ear,
+    /// Whether there is something to play it on.
+    pub speaker: SpeakerState,
     /// A file that was dropped on the window; the frame composer opens it.
     pub dropped: Option<std::path::PathBuf>,
     /// Records the pad, or plays a replay.
@@ -203,6 +211,9 @@ impl App {
             ground_changed: true,
             best: Best::default(),
             put_right: 0,
+            comparison: Comparison::default(),
+            ear: Ear::default(),
+            speaker: SpeakerState::default(),
             dropped: None,
             replaying: Replaying::Off,
             replay_line: ReplayLine::default(),
@@ -254,6 +265,7 @@ impl App {
         let (root, apart) = self.middle(alpha);
         let (heading, ground) = (player.heading(), player.state.ground_height);
         self.camera.make_room_for(dt, apart);
+        self.follow_compared(dt, alpha);
         let stick = self.layout.preferences.stick(input.right_stick);
         self.camera.advance(dt, stick, root, heading, ground);
         self.camera.follow_head(dt, self.head(alpha));
@@ -278,6 +290,7 @@ impl App {
         self.observe_first_steps(&input);
         self.note_refusal();
         self.follow_race();
+        self.ear.hear(&self.sim, self.camera.listener());
         if self.sim.playback().is_some_and(Playback::has_restarted) {
             self.trail.clear();
         }
@@ -293,18 +306,6 @@ impl App {
     #[must_use]
     pub fn alpha(&self) -> f32 {
         if self.clock.paused || self.failure.is_some() { 1.0 } else { self.clock.alpha() }
-    }
-
-    /// Sets the scene for the next picture.
-    pub fn set_scene(&self, scene: &mut Scene, around: f32) {
-        let mut shown = self.layout.shown;
-        shown.collision_shapes |= !self.has_mesh;
-        set_scene(scene, &self.sim, &self.camera, around, (self.alpha(), &shown, &self.trail));
-        if let Some(grab) = &self.grab
-            && let Some(from) = self.origin_of(grab.held)
-        {
-            scene.arrow(from, from + grab.pull, 0.012, [0.95, 0.3, 0.1, 1.0]);
-        }
     }
 
     /// All panels, keys and the mouse: one frame of the user's doing. `around` as in [`App::set_scene`].

@@ -155,8 +155,8 @@ impl Ray {
 /// The prop or the body of a character whose shape the ray meets first, or passes within [`REACH`] of. On the empty floor
 /// the player's alone.
 fn nearest(app: &App, ray: &Ray) -> Option<Held> {
-    // A clip can't be pulled at: the mouse turns the camera.
-    if app.sim.playback().is_some() {
+    // A clip can't be pulled at, and views beside each other have rays of their own: the mouse turns the camera.
+    if app.sim.playback().is_some() || app.views() > 1 {
         return None;
     }
     let mut nearest: Option<(f32, Held)> = None;

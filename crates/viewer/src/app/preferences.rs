@@ -71,6 +71,10 @@ pub struct Preferences {
     pub inverts_y: bool,
     /// How finely pictures are drawn.
     pub quality: Quality,
+    /// Footsteps, impacts and bells are played where there is a device.
+    pub plays_sound: bool,
+    /// Of the sounds, from 0 to 1.
+    pub volume: f32,
     /// Which key does what.
     pub keys: KeyMap,
 }
@@ -86,12 +90,16 @@ impl Default for Preferences {
             stick_sensitivity: 1.0,
             inverts_y: false,
             quality: Quality::default(),
+            plays_sound: true,
+            volume: Self::USUAL_VOLUME,
             keys: KeyMap::default(),
         }
     }
 }
 
 impl Preferences {
+    /// Volume at the first start.
+    pub const USUAL_VOLUME: f32 = 0.6;
     /// Range of the sensitivities.
     pub const SENSITIVITY: std::ops::RangeInclusive<f32> = 0.2..=3.0;
     /// Sizes that are offered; the first is the least and the last the largest that a file may say.
@@ -103,11 +111,13 @@ impl Preferences {
         let within = |value: f32, low: f32, high: f32| {
             if value.is_finite() { value.clamp(low, high) } else { 1.0 }
         };
+        let volume = if self.volume.is_finite() { self.volume.clamp(0.0, 1.0) } else { Self::USUAL_VOLUME };
         let (least, most) = (*Self::SENSITIVITY.start(), *Self::SENSITIVITY.end());
         Self {
             ui_scale: within(self.ui_scale, Self::UI_SCALES[0], Self::UI_SCALES[Self::UI_SCALES.len() - 1]),
             mouse_sensitivity: within(self.mouse_sensitivity, least, most),
             stick_sensitivity: within(self.stick_sensitivity, least, most),
+            volume,
             ..self
         }
     }
@@ -124,6 +134,12 @@ impl Preferences {
         self.signed(glam::Vec2::from_array(by) * self.stick_sensitivity).to_array()
     }
 
+    /// The volume of the sounds as they are to be played: 0 while they are off.
+    #[must_use]
+    pub fn loudness(&self) -> f32 {
+        if self.plays_sound { self.volume } else { 0.0 }
+    }
+
     fn signed(&self, by: glam::Vec2) -> glam::Vec2 {
         if self.inverts_y { glam::Vec2::new(by.x, -by.y) } else { by }
     }
@@ -138,9 +154,17 @@ mod tests {
         let read: Preferences = ron::from_str("(ui_scale: 99.0, mouse_sensitivity: -1.0)").unwrap();
         let expected = Preferences { ui_scale: 2.0, mouse_sensitivity: 0.2, ..Preferences::default() };
         assert_eq!(read.clamped(), expected);
-        let broken = Preferences { stick_sensitivity: f32::NAN, ..Preferences::default() };
+        let broken = Preferences { stick_sensitivity: f32::NAN, volume: f32::NAN, ..Preferences::default() };
         assert_eq!(broken.clamped(), Preferences::default());
-        assert!(ron::from_str::<Preferences>("(volume: 11)").is_err());
+        assert_eq!(ron::from_str::<Preferences>("(volume: 11)").unwrap().clamped().volume, 1.0);
+        assert!(ron::from_str::<Preferences>("(bass: 11)").is_err());
+    }
+
+    #[test]
+    fn sounds_that_are_off_have_no_loudness() {
+        let chosen = Preferences { volume: 0.4, ..Preferences::default() };
+        assert_eq!(chosen.loudness(), 0.4);
+        assert_eq!(Preferences { plays_sound: false, ..chosen }.loudness(), 0.0);
     }
 
     #[test]

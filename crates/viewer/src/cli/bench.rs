@@ -13,7 +13,7 @@ use super::{Bench, load};
 use crate::camera::Camera;
 use crate::gpu::Gpu;
 use crate::render::{OffScreen, RenderConfig, Renderer, Scene};
-use crate::scene_setup::{Shown, Trail, set_scene};
+use crate::scene_setup::{Picture, Shown, Trail, set_scene};
 use crate::sim::{SimConfig, Simulation, model_of};
 use crate::text::counted;
 
@@ -131,7 +131,14 @@ fn frames_per_second(gpu: &Gpu, characters: usize) -> anyhow::Result<f64> {
     let mut scene = Scene::default();
     let mut draw = |sim: &Simulation, alpha: f32| -> anyhow::Result<f64> {
         let start = Instant::now();
-        set_scene(&mut scene, sim, &camera, 0.6, (alpha, &Shown::default(), &Trail::default()));
+        let picture = Picture {
+            view: camera.view(0.6),
+            alone: None,
+            alpha,
+            shown: &Shown::default(),
+            trail: &Trail::default(),
+        };
+        set_scene(&mut scene, sim, &picture);
         let mut encoder = gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
         renderer.draw(&mut encoder, target.view(), target.size(), &scene);
         gpu.queue.submit([encoder.finish()]);

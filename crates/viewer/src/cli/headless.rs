@@ -9,7 +9,7 @@ use replay::Replay;
 use super::open::open;
 use super::pad_input::PadInput;
 use super::replay_files;
-use super::report::{RaceReport, Report};
+use super::report::{Compared, RaceReport, Report};
 use super::{Demo, MOST_SECS};
 use crate::analysis::Analysis;
 use crate::app::App;
@@ -215,6 +215,7 @@ impl<'a> Headless<'a> {
             mean_speed_mps: distance_m / self.seconds.max(self.app.sim.tick_secs().into()),
             control_ticks_per_second: ticks / totals.whole.as_secs_f64().max(1e-9),
             policy_microseconds_per_tick: totals.policy.as_secs_f64() * 1e6 / ticks,
+            comparison: Compared::of(&self.app.sim),
             race: self.app.sim.shared().map(|s| RaceReport::of(s, self.app.sim.tick_secs())),
             state_hash: totals.hash.to_string(),
             frames: self.painter.as_ref().map_or(0, |p| p.drawn),

@@ -4,7 +4,7 @@ pub mod bench;
 pub mod headless;
 pub mod load;
 pub mod open;
-mod pad_input;
+pub mod pad_input;
 pub mod replay_files;
 mod report;
 mod values;
@@ -15,8 +15,8 @@ use std::path::PathBuf;
 use clap::{Args, Parser, Subcommand};
 use policy_core::BlendMode;
 
-use crate::app::App;
-use crate::sim::{Engine, GroundKind, SceneKind};
+use crate::app::{App, FirstStep};
+use crate::sim::{Engine, GroundKind, SECOND_CHARACTER, SceneKind};
 use crate::text;
 pub use values::{GhostChoice, PanelList};
 
@@ -80,14 +80,14 @@ pub struct Demo {
     /// Run without a window.
     #[arg(long)]
     pub headless: bool,
-    /// Pad input over time (RON); headless runs only. Without it the pad is neutral.
-    #[arg(long, value_name = "FILE", requires = "headless")]
+    /// Pad input over time (RON), in a window instead of the pads. Without it a run without a window has a neutral pad.
+    #[arg(long, value_name = "FILE")]
     pub script: Option<PathBuf>,
     /// Pad input recorded from a device by `pad record`, instead of a script.
-    #[arg(long, value_name = "FILE", requires = "headless", conflicts_with = "script")]
+    #[arg(long, value_name = "FILE", conflicts_with = "script")]
     pub recording: Option<PathBuf>,
     /// Pad input of a second player over time (RON), who takes over a character of the playground.
-    #[arg(long, value_name = "FILE", requires = "headless", conflicts_with_all = ["replay", "poses", "record_replay"])]
+    #[arg(long, value_name = "FILE", conflicts_with_all = ["replay", "poses", "record_replay"])]
     pub second_script: Option<PathBuf>,
     /// Record what is pressed into this file: a replay, to be played on any machine.
     #[arg(long, value_name = "FILE")]
@@ -172,6 +172,12 @@ pub struct Demo {
     /// empty floor; a run without a window is on the empty floor.
     #[arg(long, value_parser = values::scene)]
     pub scene: Option<SceneKind>,
+    /// All blend modes beside each other in a split screen, under the same stick on the empty floor, with falls counted.
+    #[arg(
+        long,
+        conflicts_with_all = ["mode", "ghost", "scene", "characters", "poses", "replay", "record_replay", "second_script"]
+    )]
+    pub compare: bool,
     /// Number of characters, 1 to 200; in the playground 1 to 5. By default 1, in the playground 5.
     #[arg(long, value_name = "N", value_parser = values::characters)]
     pub characters: Option<usize>,
@@ -197,6 +203,7 @@ impl Demo {
         let needs_empty = self.headless
             || self.poses.is_some()
             || self.ghost.is_some()
+            || self.compare
             || self.characters.is_some()
             || self.terrain != GroundKind::Flat
             || self.physics != Engine::Mujoco;
@@ -209,14 +216,14 @@ const MOST_SECS: f64 = 3600.0;
 /// Longest line of a trace, characters.
 const LONGEST_LINE: usize = 200;
 
-/// Writes one line of what the player does to standard error.
+/// Writes one line of what the players do to standard error.
 pub fn trace(app: &App) {
     let player = app.sim.player();
     let position = player.report().position;
     let nodes = app.sim.pack().graph().nodes();
     let at = player.state.root().position;
     let line = format!(
-        "tick {} {} {} {:.2} at {:.3} {:.3} {:.3} speed {:.2}{}",
+        "tick {} {} {} {:.2} at {:.3} {:.3} {:.3} speed {:.2}{}{}{}",
         app.sim.ticks(),
         nodes[position.from.index()].name,
         nodes[position.to.index()].name,
@@ -226,8 +233,27 @@ pub fn trace(app: &App) {
         at.z,
         player.speed(),
         if player.is_down() { " down" } else { "" },
+        second(app),
+        done(app),
     );
     remark(&line);
+}
+
+/// Where a second player is.
+fn second(app: &App) -> String {
+    if !app.sim.has_second_player() {
+        return String::new();
+    }
+    let at = app.sim.characters()[SECOND_CHARACTER].state.root().position;
+    format!(" second {:.3} {:.3} {:.3}", at.x, at.y, at.z)
+}
+
+/// What the player has done: first steps, and props that are in the world.
+fn done(app: &App) -> String {
+    let steps = FirstStep::ALL.into_iter().filter(|step| app.first_steps.is_done(*step));
+    let steps: String = steps.map(|step| format!(" {}", step.title().replace(' ', "_"))).collect();
+    let props = app.sim.shared().map_or(0, |shared| shared.pieces().len());
+    format!(" props {props} did{steps}")
 }
 
 /// Writes a line to standard error.

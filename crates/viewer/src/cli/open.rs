@@ -63,7 +63,9 @@ pub fn open(demo: &Demo) -> anyhow::Result<Opened> {
         characters: demo.characters.unwrap_or(scene.usual_characters()),
         seed: demo.seed,
         history: !demo.headless && clip.is_none(),
+        comparison: false,
     };
+    let config = if demo.compare { config.compared() } else { config };
     let mut sim = Simulation::new(pack, config)?;
     sim.set_blend_mode(demo.mode);
     sim.renews_controllers = demo.renew_controllers;

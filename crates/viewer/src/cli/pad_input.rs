@@ -1,4 +1,4 @@
-//! Where a run without a window gets its pad from: a script, a recording of a device, or nowhere.
+//! Pads that depend on time alone: a script, a recording of a device, or one at rest.
 
 use std::path::Path;
 
@@ -46,6 +46,11 @@ impl PadInput {
         let Some(path) = &demo.second_script else { return Ok(None) };
         check(path)?;
         Ok(Some(Self::Script(Script::load(path)?)))
+    }
+
+    /// True for a pad that the command line asks for.
+    pub fn is_given(&self) -> bool {
+        !matches!(self, Self::Neutral)
     }
 
     /// Seconds it lasts; `None` for a pad at rest.

@@ -2,7 +2,7 @@
 
 use serde::Serialize;
 
-use crate::sim::SharedWorld;
+use crate::sim::{SharedWorld, Simulation};
 use crate::text::counted;
 use playground::RaceState;
 
@@ -45,6 +45,8 @@ pub struct Report {
     pub control_ticks_per_second: f64,
     /// Time of one controller's tick, mean.
     pub policy_microseconds_per_tick: f64,
+    /// Each blend mode of a comparison; empty without one.
+    pub comparison: Vec<Compared>,
     /// The player's run over the course, where there is one.
     pub race: Option<RaceReport>,
     /// Over all positions and velocities: equal runs have equal hashes.
@@ -53,6 +55,24 @@ pub struct Report {
     pub frames: usize,
     /// What drew them.
     pub adapter: Option<String>,
+}
+
+/// What became of one blend mode in a comparison.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+pub struct Compared {
+    /// Its name.
+    pub mode: &'static str,
+    /// Falls of its character.
+    pub falls: u32,
+}
+
+impl Compared {
+    /// All modes that a world compares.
+    #[must_use]
+    pub fn of(sim: &Simulation) -> Vec<Self> {
+        let characters = if sim.config().comparison { sim.characters() } else { &[] };
+        characters.iter().map(|c| Self { mode: c.blend_mode().name(), falls: c.falls() }).collect()
+    }
 }
 
 /// How far the player came on the course.

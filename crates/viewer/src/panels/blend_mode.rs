@@ -28,6 +28,12 @@ pub(super) fn show(ui: &mut Ui, app: &App, commands: &mut Vec<ViewerCommand>) {
         Evaluation::Actions => "every policy of the blend",
     };
     ui.weak(format!("the last tick evaluated {took}"));
+    let compares = app.views() > 1;
+    let label = if compares { "end the split screen" } else { "compare in split screen" };
+    let told = "All three under the same stick, side by side on the empty floor, with falls counted";
+    if ui.button(label).on_hover_text(told).clicked() {
+        commands.push(ViewerCommand::Compare(!compares));
+    }
     ui.separator();
     ui.label("A ghost from the same state, under another mode:");
     ui.horizontal_wrapped(|ui| {

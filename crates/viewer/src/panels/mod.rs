@@ -2,6 +2,7 @@
 
 mod analysis;
 mod blend_mode;
+mod comparison;
 mod failure;
 mod first_steps;
 mod graph;
@@ -56,6 +57,7 @@ pub(crate) fn show(ui: &mut Ui, app: &App, commands: &mut Vec<ViewerCommand>) ->
     }
     race::show(ui, app, free);
     replay::show(ui, app, free);
+    comparison::show(ui, app, free);
     toasts::show(ui, app, free, commands);
     if app.help {
         help::show(ui, app, commands);
@@ -106,6 +108,16 @@ fn bar(ui: &mut Ui, app: &App, commands: &mut Vec<ViewerCommand>) {
             let told = "Panels that show how the method works, for the curious";
             if ui.checkbox(&mut advanced, "Advanced").on_hover_text(told).changed() {
                 commands.push(ViewerCommand::Preferences(Preferences { advanced, ..preferences }));
+            }
+            let compares = app.views() > 1;
+            let (label, told) = match compares {
+                true => ("End comparison", "Back to where you were"),
+                false => {
+                    ("Compare", "Three ways to blend under the same stick, side by side, with falls counted")
+                }
+            };
+            if app.sim.playback().is_none() && ui.button(label).on_hover_text(told).clicked() {
+                commands.push(ViewerCommand::Compare(!compares));
             }
         });
     });

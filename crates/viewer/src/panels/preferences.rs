@@ -4,6 +4,7 @@ use egui::{Slider, Ui};
 
 use crate::app::{App, KeyAction, Preferences, Quality, ViewerCommand};
 use crate::camera::CameraMode;
+use crate::sound::SpeakerState;
 
 /// What the title and the frame of the window take, points, and the least that is left for the rest.
 const MARGIN: f32 = 90.0;
@@ -20,6 +21,7 @@ pub(super) fn show(ui: &Ui, app: &App, commands: &mut Vec<ViewerCommand>) {
         egui::ScrollArea::vertical().max_height(room).show(ui, |ui| {
             let mut chosen = app.layout.preferences;
             screen(ui, &mut chosen);
+            sound(ui, app, &mut chosen);
             camera(ui, app, &mut chosen, commands);
             start(ui, &mut chosen, commands);
             keys(ui, app, commands);
@@ -60,6 +62,27 @@ fn screen(ui: &mut Ui, chosen: &mut Preferences) {
     });
     ui.checkbox(&mut chosen.advanced, "Advanced panels")
         .on_hover_text("All panels of the method instead of the simple layout");
+    ui.add_space(8.0);
+}
+
+fn sound(ui: &mut Ui, app: &App, chosen: &mut Preferences) {
+    ui.strong("Sound");
+    ui.horizontal_wrapped(|ui| {
+        let told = "Footsteps, impacts, and bells at the checkpoints";
+        ui.checkbox(&mut chosen.plays_sound, "Play sounds").on_hover_text(told);
+        let why = match app.speaker {
+            SpeakerState::NotBuilt => "this program was built without sound",
+            SpeakerState::Looking => "looking for a device",
+            SpeakerState::NoDevice => "no device was found",
+            SpeakerState::Playing => "",
+        };
+        ui.weak(why);
+    });
+    // A drag is kept once, at its end.
+    let volume = Slider::new(&mut chosen.volume, 0.0..=1.0).update_while_editing(false);
+    let percent = |value: f64, _| format!("{:.0} %", 100.0 * value);
+    ui.add_enabled(chosen.plays_sound, volume.custom_formatter(percent).text("volume"))
+        .on_hover_text("How loud the sounds are");
     ui.add_space(8.0);
 }
 

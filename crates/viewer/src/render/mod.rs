@@ -26,7 +26,7 @@ use model::MeshBuffers;
 pub use off_screen::OffScreen;
 pub use pipelines::SHADERS;
 use pipelines::{Layouts, Pipelines};
-pub use scene::{Figure, Marker, RibbonVertex, Scene, Solid, View};
+pub use scene::{Figure, Marker, Part, RibbonVertex, Scene, Solid, View};
 pub use solids::{GroundGrid, SolidVertex};
 use targets::Targets;
 use upload::Counts;
@@ -131,12 +131,26 @@ impl Renderer {
         size: [u32; 2],
         scene: &Scene,
     ) {
-        let counts = self.upload(scene, size);
+        self.draw_part(encoder, view, (size, Part::whole(size)), scene);
+    }
+
+    /// The same into a part of `view`. What is recorded has to be submitted before the next part is.
+    pub fn draw_part(
+        &mut self,
+        encoder: &mut wgpu::CommandEncoder,
+        view: &wgpu::TextureView,
+        (size, part): ([u32; 2], Part),
+        scene: &Scene,
+    ) {
+        if part.width == 0 {
+            return;
+        }
+        let counts = self.upload(scene, [part.width, size[1]]);
         if self.targets.as_ref().is_none_or(|t| t.size != size) {
             self.targets = Some(Targets::new(&self.gpu.device, size, self.format, &self.config));
         }
         self.draw_shadows(encoder, &counts);
-        self.draw_picture(encoder, view, &counts);
+        self.draw_picture(encoder, view, part, &counts);
     }
 
     /// Draws `scene` into a picture and reads it back.
@@ -175,23 +189,35 @@ impl Renderer {
         }
     }
 
-    fn draw_picture(&self, encoder: &mut wgpu::CommandEncoder, view: &wgpu::TextureView, counts: &Counts) {
+    fn draw_picture(
+        &self,
+        encoder: &mut wgpu::CommandEncoder,
+        view: &wgpu::TextureView,
+        part: Part,
+        counts: &Counts,
+    ) {
         let targets = self.targets.as_ref().expect("made by draw");
         let (view, resolve_target, store) = match &targets.colour {
-            Some(colour) => (colour, Some(view), wgpu::StoreOp::Discard),
+            Some(colour) if part.last => (colour, Some(view), wgpu::StoreOp::Discard),
+            // The other parts are drawn beside it first.
+            Some(colour) => (colour, None, wgpu::StoreOp::Store),
             None => (view, None, wgpu::StoreOp::Store),
         };
+        let load = if part.first { wgpu::LoadOp::Clear(wgpu::Color::BLACK) } else { wgpu::LoadOp::Load };
         let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
             label: Some("picture"),
             color_attachments: &[Some(wgpu::RenderPassColorAttachment {
                 view,
                 depth_slice: None,
                 resolve_target,
-                ops: wgpu::Operations { load: wgpu::LoadOp::Clear(wgpu::Color::BLACK), store },
+                ops: wgpu::Operations { load, store },
             })],
             depth_stencil_attachment: Some(depth_attachment(&targets.depth, wgpu::StoreOp::Discard)),
             ..Default::default()
         });
+        let height = targets.size[1];
+        pass.set_viewport(part.left as f32, 0.0, part.width as f32, height as f32, 0.0, 1.0);
+        pass.set_scissor_rect(part.left, 0, part.width, height);
         pass.set_bind_group(0, &self.frame_group, &[]);
         pass.set_bind_group(1, &self.shadow_group, &[]);
         self.draw_figures(&mut pass, counts);

@@ -29,6 +29,27 @@ impl Default for View {
     }
 }
 
+/// A column of a picture that several scenes share, as high as the whole.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Part {
+    /// Its left edge, pixels.
+    pub left: u32,
+    /// Pixels.
+    pub width: u32,
+    /// The first part clears the whole picture.
+    pub first: bool,
+    /// The last part completes it.
+    pub last: bool,
+}
+
+impl Part {
+    /// All of a picture of a size (width, height).
+    #[must_use]
+    pub const fn whole([width, _]: [u32; 2]) -> Self {
+        Self { left: 0, width, first: true, last: true }
+    }
+}
+
 /// A character.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Figure {

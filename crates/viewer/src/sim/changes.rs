@@ -45,6 +45,7 @@ impl Simulation {
         } else {
             for index in 0..self.steered.len() {
                 let (at, heading) = self.start_of(index);
+                self.steered[index].forget_falls();
                 if self.bodies.stand_at(index, at, heading) {
                     self.restart(index);
                 }
@@ -90,8 +91,12 @@ impl Simulation {
         Ok(())
     }
 
-    /// How every controller makes an action of a blend, from the next tick on. The ghost keeps its own mode.
+    /// How every controller makes an action of a blend, from the next tick on. The ghost keeps its own mode, and so do all in a
+    /// comparison.
     pub fn set_blend_mode(&mut self, mode: BlendMode) {
+        if self.config.comparison {
+            return;
+        }
         self.steered.iter_mut().for_each(|steered| steered.controller.set_blend_mode(mode));
     }
 

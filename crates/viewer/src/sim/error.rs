@@ -40,6 +40,16 @@ pub enum SimError {
         /// What was asked for.
         found: usize,
     },
+    /// A comparison elsewhere, or of other characters than one a mode.
+    #[error(
+        "expected {modes} characters on the empty floor to compare blend modes, found {found} or a playground"
+    )]
+    Comparison {
+        /// Blend modes.
+        modes: usize,
+        /// Characters that were asked for.
+        found: usize,
+    },
     /// Too many or too few characters.
     #[error("expected 1 to {} characters, found {found}", super::MAX_CHARACTERS)]
     Characters {

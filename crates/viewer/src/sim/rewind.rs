@@ -12,13 +12,14 @@ pub(super) struct SavedTick {
     pub(super) down_secs: f32,
     pub(super) shoved_secs: f32,
     pub(super) was_down: bool,
+    pub(super) falls: u32,
     pub(super) place: Option<Vec2>,
 }
 
 impl SavedTick {
     pub(super) fn new(pack: &CharacterPack) -> Self {
         let controller = ControllerState::new(pack);
-        Self { controller, down_secs: 0.0, shoved_secs: 0.0, was_down: false, place: None }
+        Self { controller, down_secs: 0.0, shoved_secs: 0.0, was_down: false, falls: 0, place: None }
     }
 }
 

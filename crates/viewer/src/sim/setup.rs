@@ -39,6 +39,9 @@ pub struct SimConfig {
     pub seed: u32,
     /// Keep the last ten seconds, to rewind to, where the engine can.
     pub history: bool,
+    /// Each character has a blend mode of its own and starts where the others do; as many as there are modes, on the
+    /// empty floor.
+    pub comparison: bool,
 }
 
 impl Default for SimConfig {
@@ -50,6 +53,7 @@ impl Default for SimConfig {
             characters: 1,
             seed: 1,
             history: false,
+            comparison: false,
         }
     }
 }
@@ -58,6 +62,9 @@ impl SimConfig {
     /// Where a character starts on the empty floor: the player at the origin, the others in a block behind it.
     #[must_use]
     pub fn start_of(&self, index: usize) -> Vec2 {
+        if self.comparison {
+            return Vec2::ZERO;
+        }
         let side = (self.characters as f32).sqrt().ceil() as usize;
         let (row, column) = (index / side, index % side);
         // The player stands in the middle of the first row.
@@ -71,10 +78,15 @@ impl SimConfig {
         Vec2::new(-(row as f32) * SPACING, across)
     }
 
+    /// The blend mode of a character where the others have `mode`.
+    fn mode_of(&self, index: usize, mode: BlendMode) -> BlendMode {
+        if self.comparison { BlendMode::ALL[index % BlendMode::ALL.len()] } else { mode }
+    }
+
     /// Where a character looks at the start: the player along x, the others up to 20 degrees off.
     #[must_use]
     pub fn heading_of(&self, index: usize) -> Heading {
-        if index == 0 {
+        if index == 0 || self.comparison {
             return Heading::FORWARD;
         }
         // A small mixing function of index and seed: the same everywhere, and nothing more is needed of it.
@@ -208,12 +220,16 @@ fn populate(
     mode: BlendMode,
     config: SimConfig,
 ) -> Result<Populated, SimError> {
+    let modes = BlendMode::ALL.len();
+    if config.comparison && (config.scene != SceneKind::Empty || config.characters != modes) {
+        return Err(SimError::Comparison { modes, found: config.characters });
+    }
     let bodies = match config.scene {
         SceneKind::Empty => apart(model, config)?,
         SceneKind::Playground => together(model, config)?,
     };
     let steered: Vec<SteeredCharacter> = (0..config.characters)
-        .map(|index| SteeredCharacter::new(Arc::clone(pack), mode, bodies.of(index)))
+        .map(|index| SteeredCharacter::new(Arc::clone(pack), config.mode_of(index, mode), bodies.of(index)))
         .collect();
     let skeleton = model.skeleton();
     let shove = Shove {

@@ -10,7 +10,8 @@ use std::time::{Duration, Instant};
 
 use glam::{Vec2, Vec3};
 use physics_bridge::{
-    CharacterHandle, Diverging, Grab, HISTORY_SECS, Handle, Model, Movable, PropHandle, Remedy, World,
+    CharacterHandle, Diverging, FixtureHandle, Grab, HISTORY_SECS, Handle, Model, Movable, PropHandle,
+    Remedy, World,
 };
 use policy_core::{BodyId, Heading};
 
@@ -19,7 +20,7 @@ use super::{SimError, SteeredCharacter};
 pub use loose::MOST_BALLS;
 pub use pieces::Piece;
 pub use playground::LooseKind;
-use playground::{Playground, Race, RaceEvent, Wanderer};
+use playground::{Paint, Playground, Race, RaceEvent, Wanderer};
 
 /// What the mouse can hold.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -39,6 +40,7 @@ pub struct SharedWorld {
     scene: Arc<Playground>,
     world: World,
     characters: Vec<CharacterHandle>,
+    fixtures: Vec<(FixtureHandle, Paint)>,
     state: PlayState,
     history: Option<Box<Ring<PlayState>>>,
     held: Option<(Held, Handle<Grab>)>,
@@ -70,9 +72,10 @@ impl SharedWorld {
             return Err(SimError::PlaygroundCharacters { most: scene.starts.len(), found: characters });
         }
         let mut world = World::new(model)?;
-        let (handles, pieces) = world.edit(|edit| {
+        let (handles, pieces, fixtures) = world.edit(|edit| {
+            let mut fixtures = Vec::with_capacity(scene.fixtures.len());
             for painted in &scene.fixtures {
-                edit.add_fixture(painted.fixture.clone())?;
+                fixtures.push((edit.add_fixture(painted.fixture.clone())?, painted.paint));
             }
             let pieces = pieces::add(edit, &scene)?;
             loose::reserve(edit)?;
@@ -81,7 +84,7 @@ impl SharedWorld {
                 let heading = Heading::from_angle(start.heading);
                 handles.push(edit.add_character(model, start.at.x, start.at.y, heading, 0.0)?);
             }
-            Ok((handles, pieces))
+            Ok((handles, pieces, fixtures))
         })?;
         let wanderer = |(index, start): (usize, &playground::Start)| {
             Wanderer::new(start.zone, start.heading, seed.into(), index as u64)
@@ -96,6 +99,7 @@ impl SharedWorld {
             scene,
             world,
             characters: handles,
+            fixtures,
             state,
             history: ring,
             held: None,

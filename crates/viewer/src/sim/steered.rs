@@ -39,6 +39,7 @@ pub struct SteeredCharacter {
     /// Seconds that the last shove still acts.
     pub(super) shoved_secs: f32,
     was_down: bool,
+    falls: u32,
     /// Where a gait without a direction came to rest.
     place: Option<Vec2>,
     poses: [BodyPoses; 2],
@@ -60,6 +61,7 @@ impl SteeredCharacter {
             down_secs: 0.0,
             shoved_secs: 0.0,
             was_down: false,
+            falls: 0,
             place: None,
             history,
             controller: Controller::with_config(pack, config(mode)),
@@ -104,6 +106,22 @@ impl SteeredCharacter {
         let fast = root.linear_velocity.length() > SHOVED_BELOW_MPS;
         let low = self.state.root_height() < least_height;
         self.shoved_secs <= 0.0 && !fast && !low && !self.is_down()
+    }
+
+    /// Times it fell since it was put to its start.
+    #[must_use]
+    pub fn falls(&self) -> u32 {
+        self.falls
+    }
+
+    /// How its controller makes an action of a blend.
+    #[must_use]
+    pub fn blend_mode(&self) -> BlendMode {
+        self.controller.config().blend_mode
+    }
+
+    pub(super) fn forget_falls(&mut self) {
+        self.falls = 0;
     }
 
     /// Poses `alpha` of the way from the last tick but one to the last.
@@ -156,7 +174,9 @@ impl SteeredCharacter {
         let before = self.position();
         self.take_pose(body);
         let down = self.is_down();
-        totals.tick(before.distance(self.position()), down, down && !self.was_down);
+        let fell = down && !self.was_down;
+        self.falls += u32::from(fell);
+        totals.tick(before.distance(self.position()), down, fell);
         self.was_down = down;
         let helpless = down && self.controller.pack().recovery().is_none();
         self.down_secs = if helpless { self.down_secs + dt_secs } else { 0.0 };
@@ -233,7 +253,7 @@ impl SteeredCharacter {
             let saved = history.next();
             self.controller.save_into(&mut saved.controller);
             (saved.down_secs, saved.shoved_secs) = (self.down_secs, self.shoved_secs);
-            (saved.was_down, saved.place) = (self.was_down, self.place);
+            (saved.was_down, saved.falls, saved.place) = (self.was_down, self.falls, self.place);
         }
     }
 
@@ -243,7 +263,7 @@ impl SteeredCharacter {
         // It was saved by a controller of the same pack.
         debug_assert!(restored.is_ok(), "{restored:?}");
         (self.down_secs, self.shoved_secs) = (saved.down_secs, saved.shoved_secs);
-        (self.was_down, self.place) = (saved.was_down, saved.place);
+        (self.was_down, self.falls, self.place) = (saved.was_down, saved.falls, saved.place);
     }
 
     /// Forgets the pose of the tick before.

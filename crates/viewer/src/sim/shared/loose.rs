@@ -24,7 +24,7 @@ impl SharedWorld {
         let full = self.state.pieces.iter().filter(is_kind).count() >= kind.most();
         let oldest = full.then(|| self.state.pieces.iter().find(is_kind).map(|piece| piece.handle)).flatten();
         let (prop, paint) = kind.prop();
-        let solid = prop.solid.clone();
+        let described = prop.clone();
         let handle = self.world.edit(|edit| {
             if let Some(oldest) = oldest {
                 edit.remove_prop(oldest)?;
@@ -32,7 +32,7 @@ impl SharedWorld {
             edit.add_prop(prop, motion)
         })?;
         self.state.pieces.retain(|piece| Some(piece.handle) != oldest);
-        let mut piece = Piece::new(handle, solid, paint, &motion);
+        let mut piece = Piece::new(handle, &described, paint, &motion);
         piece.loose = Some(kind);
         self.state.pieces.push(piece);
         Ok(())

@@ -1,7 +1,9 @@
 //! The props as they are drawn: where they were at the last two ticks, and what holds them.
 
 use glam::{Quat, Vec3};
-use physics_bridge::{Motion, PropHandle, Solid, WorldEdit, WorldError};
+use physics_bridge::{
+    CharacterHandle, FixtureHandle, Motion, Prop, PropHandle, Solid, WorldEdit, WorldError,
+};
 
 use super::{LooseKind, SharedWorld};
 use playground::{Paint, Playground};
@@ -17,6 +19,8 @@ pub struct Piece {
     pub anchor: Option<Vec3>,
     /// Its shape.
     pub solid: Solid,
+    /// Kilograms.
+    pub mass_kg: f32,
     /// Its number in the scene.
     pub(super) of_scene: Option<usize>,
     /// What was thrown or put there.
@@ -27,9 +31,22 @@ pub struct Piece {
 
 impl Piece {
     /// A piece at rest where `motion` has it.
-    pub(super) fn new(handle: PropHandle, solid: Solid, paint: Paint, motion: &Motion) -> Self {
+    pub(super) fn new(handle: PropHandle, prop: &Prop, paint: Paint, motion: &Motion) -> Self {
         let pose = (motion.position, motion.rotation);
-        Self { handle, paint, anchor: None, solid, of_scene: None, loose: None, poses: [pose; 2] }
+        let (solid, mass_kg) = (prop.solid.clone(), prop.mass_kg);
+        Self { handle, paint, anchor: None, solid, mass_kg, of_scene: None, loose: None, poses: [pose; 2] }
+    }
+
+    /// From end to end, metres; of a hull, which no scene has, 0.
+    #[must_use]
+    pub fn length_m(&self) -> f32 {
+        match self.solid {
+            Solid::Sphere { radius } => 2.0 * radius,
+            Solid::Capsule { radius, half_length } => 2.0 * (radius + half_length),
+            Solid::Cylinder { radius, half_length } => 2.0 * radius.max(half_length),
+            Solid::Cuboid { half_extents } => 2.0 * half_extents.max_element(),
+            Solid::Hull { .. } => 0.0,
+        }
     }
 
     /// Position and rotation `alpha` of the way into the last tick.
@@ -46,7 +63,7 @@ pub(super) fn add(edit: &mut WorldEdit<'_>, scene: &Playground) -> Result<Vec<Pi
     for (index, placed) in scene.props.iter().enumerate() {
         let motion = placed.start();
         let handle = edit.add_prop(placed.prop.clone(), motion)?;
-        let mut piece = Piece::new(handle, placed.prop.solid.clone(), placed.paint, &motion);
+        let mut piece = Piece::new(handle, &placed.prop, placed.paint, &motion);
         piece.of_scene = Some(index);
         if let Some(joint) = placed.joint {
             edit.join(handle, None, joint)?;
@@ -62,6 +79,24 @@ impl SharedWorld {
     #[must_use]
     pub fn pieces(&self) -> &[Piece] {
         &self.state.pieces
+    }
+
+    /// Colour of a fixture of the scene.
+    #[must_use]
+    pub fn paint_of(&self, fixture: FixtureHandle) -> Option<Paint> {
+        self.fixtures.iter().find(|(handle, _)| *handle == fixture).map(|(_, paint)| *paint)
+    }
+
+    /// The index of a character.
+    #[must_use]
+    pub fn index_of(&self, character: CharacterHandle) -> Option<usize> {
+        self.characters.iter().position(|&handle| handle == character)
+    }
+
+    /// True for a pendulum that is kept swinging.
+    #[must_use]
+    pub fn is_driven(&self, piece: &Piece) -> bool {
+        piece.of_scene.is_some_and(|index| self.scene.props[index].swing_m.is_some())
     }
 
     /// Notes where the props are. Those that the physics has taken out are forgotten.
