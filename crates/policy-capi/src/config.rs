@@ -75,6 +75,8 @@ pub struct PsConfig {
     pub give_way_held_up_share: f32,
     /// How long it stands then, seconds; at least 0.
     pub give_way_stop_secs: f32,
+    /// Not 0: blend gaits with their variants for rough ground where the ground is uneven.
+    pub footing: i32,
 }
 
 impl Default for PsConfig {
@@ -109,6 +111,7 @@ impl Default for PsConfig {
             give_way: config.give_way.is_some().into(),
             give_way_held_up_share: give_way.held_up_share,
             give_way_stop_secs: give_way.stop_secs,
+            footing: config.footing.into(),
         }
     }
 }
@@ -157,6 +160,7 @@ impl PsConfig {
             turn_assist: (self.turn_assist != 0).then_some(turn),
             steering: (self.steering != 0).then_some(steering),
             give_way: (self.give_way != 0).then_some(give_way),
+            footing: self.footing != 0,
         })
     }
 }

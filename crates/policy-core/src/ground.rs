@@ -79,6 +79,8 @@ impl CharacterState {
 
 #[cfg(test)]
 mod tests {
+    use alloc::vec::Vec;
+
     use super::*;
     use crate::observation::observe_into;
     use glam::Vec3;
