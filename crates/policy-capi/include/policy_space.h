@@ -343,6 +343,14 @@ typedef struct PsConfig {
   float steering_trim_limit_radians;
   // Time constant of the low-pass on the velocity, seconds; at least 0.
   float steering_velocity_secs;
+  // Not 0: stop for a moment when something holds the character up.
+  int32_t give_way;
+  // Share of its speed towards the target below which it is held up, in (0, 1).
+  float give_way_held_up_share;
+  // How long it stands then, seconds; at least 0.
+  float give_way_stop_secs;
+  // Not 0: blend gaits with their variants for rough ground where the ground is uneven.
+  int32_t footing;
 } PsConfig;
 
 // Motion of one body: of its frame as in the MJCF, not of its centre of mass. World space, all at one moment.
@@ -369,6 +377,9 @@ typedef struct PsSensed {
   size_t joint_count;
   // Height of the ground below the root, metres.
   float ground_height;
+  // For each body, height of the ground where it comes to, metres: see ps_pack_ground_lookahead_secs. Those of other bodies are
+  // not read. NULL for level ground. As many entries as `bodies`.
+  const float *ground_heights;
 } PsSensed;
 
 // One policy's part in a blend.
@@ -503,6 +514,11 @@ const uint8_t *ps_pack_mesh(const struct PsPack *pack,
 
 // Writes sizes and rates.
 PsStatus ps_pack_info(const struct PsPack *pack, struct PsPackInfo *info);
+
+// Seconds after which the ground below a body counts for PsSensed.ground_heights: where the body then is at its present velocity.
+// Negative for a body that senses no ground of its own, and on failure.
+float ps_pack_ground_lookahead_secs(const struct PsPack *pack,
+                                    int32_t body);
 
 // The body that a body hangs on. PS_NONE for the root and on failure.
 int32_t ps_pack_parent(const struct PsPack *pack, int32_t body);

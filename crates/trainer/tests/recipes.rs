@@ -87,6 +87,11 @@ fn every_recipe_runs_and_binds_into_a_pack() {
     slim_checkpoints_are_enough_to_continue(&workspace, folder.path());
 
     let plan = PackPlan::load(&project().join("assets/recipes/pack/humanoid.toml")).unwrap();
+    for planned in &plan.policies {
+        let Some(skill) = &planned.skill else { continue };
+        let of_run = skills.iter().find(|trained| trained.skill == *skill).unwrap().clone();
+        skills.push(TrainedSkill { skill: planned.name.clone(), ..of_run });
+    }
     let bytes = bind(&plan, &skills, &normalisers, &model, None).unwrap().to_bytes();
     let pack = Arc::new(CharacterPack::from_bytes(&bytes).unwrap());
     assert_eq!(pack.policies().len(), plan.policies.len());
