@@ -12,7 +12,7 @@ use evaluation::{Effort, PlayerReport, Progress, Section, clip_states, evaluate,
 use files::write_atomically;
 use physics::Engine;
 use physics_bridge::Model;
-use policy_core::{CharacterPack, CharacterState, ControllerConfig, Steering, TurnAssist};
+use policy_core::{CharacterPack, CharacterState, ControllerConfig, GiveWay, Steering, TurnAssist};
 use trainer::recipe::Recipe;
 
 use super::output::say;
@@ -50,6 +50,12 @@ pub(crate) struct Arguments {
     /// Give the policies the target as it is: the player's controller neither trims against drift nor leads into turns.
     #[arg(long)]
     no_steering: bool,
+    /// Walk on against what holds the character up: the player's controller does not stop for a moment.
+    #[arg(long)]
+    no_give_way: bool,
+    /// Leave variants for rough ground out: gaits act alone on every ground.
+    #[arg(long)]
+    no_footing: bool,
     /// Seconds in which the player's controller passes from the joint targets before a skill to those of the skill.
     #[arg(long, default_value_t = 0.0, value_parser = seconds)]
     handover_secs: f32,
@@ -97,7 +103,16 @@ pub(crate) fn run(
     let turn_assist = (!arguments.no_turn_assist).then(TurnAssist::default);
     let handover_secs = arguments.handover_secs;
     let steering = (!arguments.no_steering).then(Steering::default);
-    let config = ControllerConfig { steering, turn_assist, handover_secs, ..ControllerConfig::default() };
+    let give_way = (!arguments.no_give_way).then(GiveWay::default);
+    let footing = !arguments.no_footing;
+    let config = ControllerConfig {
+        steering,
+        turn_assist,
+        handover_secs,
+        give_way,
+        footing,
+        ..ControllerConfig::default()
+    };
     let progress = Progress::bar();
     let model = physics::Model::new(model, arguments.physics)?;
     let evaluation = evaluate(&model, &Arc::new(pack), config, (&effort, sections), &states, &progress)?;

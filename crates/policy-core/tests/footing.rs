@@ -1,0 +1,109 @@
+//! Footing: gaits are blended with their variants for rough ground as far as the ground is uneven, and act alone on level ground.
+
+mod common;
+
+use std::sync::Arc;
+
+use common::{p, standing};
+use policy_core::{
+    CharacterPack, CharacterState, Command, Controller, ControllerConfig, ControllerState, Goal, PathId,
+    Skeleton,
+};
+
+const DT: f32 = 1.0 / 30.0;
+
+/// The made-up pack, whose walk has the roll's policy as its variant.
+fn pack() -> Arc<CharacterPack> {
+    let mut manifest = common::manifest();
+    manifest.policies[1].rough_ground = Some("roll".into());
+    Arc::new(CharacterPack::from_parts(manifest, common::tensors(0.0)).unwrap())
+}
+
+fn controller(footing: bool) -> Controller {
+    let mut controller =
+        Controller::with_config(pack(), ControllerConfig { footing, ..ControllerConfig::default() });
+    for _ in 0..90 {
+        tick(&mut controller, &standing());
+    }
+    controller
+}
+
+/// One tick towards the second node of the first path. Returns the policies and their weights in the first layer.
+fn tick(controller: &mut Controller, state: &CharacterState) -> Vec<(usize, f32)> {
+    let goal = Goal::Path { path: PathId::new(0), coordinate: 1.0 };
+    controller.tick(state, &Command { goal, ..Command::default() }, DT);
+    controller.report().blend.terms().iter().map(|term| (term.policy.index(), term.weights[0])).collect()
+}
+
+fn before_a_step() -> CharacterState {
+    let mut state = standing();
+    let foot = Skeleton::humanoid().feet()[0];
+    state.ground_rises[foot.index()] = 0.1;
+    state
+}
+
+fn roll() -> usize {
+    common::manifest().policies.iter().position(|policy| policy.name == "roll").unwrap()
+}
+
+#[test]
+fn a_gait_acts_alone_on_level_ground_and_as_its_variant_on_rough_ground() {
+    let mut controller = controller(true);
+    assert_eq!(tick(&mut controller, &standing()), [(1, 1.0)]);
+    let shares: Vec<f32> = (0..4).map(|_| weight(&tick(&mut controller, &before_a_step()), roll())).collect();
+    assert!((shares[0] - 1.0 / 3.0).abs() < 1e-5, "a tenth of a second to cross: {shares:?}");
+    assert_eq!(shares[3], 1.0);
+    let back = tick(&mut controller, &standing());
+    assert_eq!(back.len(), 2, "on level ground it returns slowly: {back:?}");
+    assert!(
+        (weight(&back, 1) - DT / 3.0).abs() < 1e-5
+            && (back.iter().map(|b| b.1).sum::<f32>() - 1.0).abs() < 1e-6
+    );
+    for _ in 0..90 {
+        tick(&mut controller, &standing());
+    }
+    assert_eq!(tick(&mut controller, &standing()), [(1, 1.0)]);
+}
+
+fn weight(terms: &[(usize, f32)], policy: usize) -> f32 {
+    terms.iter().filter(|term| term.0 == policy).map(|term| term.1).sum()
+}
+
+#[test]
+fn without_footing_or_without_a_variant_nothing_changes() {
+    let mut off = controller(false);
+    let mut without = Controller::new(Arc::new(common::pack(0.0)));
+    for _ in 0..90 {
+        tick(&mut without, &standing());
+    }
+    for _ in 0..10 {
+        assert_eq!(tick(&mut off, &before_a_step()), [(1, 1.0)]);
+        assert_eq!(tick(&mut without, &before_a_step()), [(1, 1.0)]);
+    }
+}
+
+#[test]
+fn a_state_saved_half_way_goes_on_with_the_same_blend() {
+    let mut run = controller(true);
+    tick(&mut run, &before_a_step());
+    let mut state = ControllerState::new(run.pack());
+    run.save_into(&mut state);
+    let mut bytes = vec![0; state.byte_len()];
+    state.write_bytes(&mut bytes);
+    let mut other = controller(true);
+    let pack = Arc::clone(other.pack());
+    state.read_bytes(&pack, &bytes).unwrap();
+    other.restore(&state).unwrap();
+    for _ in 0..20 {
+        assert_eq!(tick(&mut other, &standing()), tick(&mut run, &standing()));
+    }
+    assert!(run.report().blend.terms().iter().any(|term| term.policy == p(roll())), "still on its way back");
+}
+
+#[test]
+fn an_unknown_variant_is_refused_by_name() {
+    let mut manifest = common::manifest();
+    manifest.policies[1].rough_ground = Some("walk on gravel".into());
+    let error = CharacterPack::from_parts(manifest, common::tensors(0.0)).unwrap_err().to_string();
+    assert!(error.contains("walk on gravel") && error.contains("policy"), "{error}");
+}
