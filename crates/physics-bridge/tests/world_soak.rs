@@ -315,12 +315,12 @@ fn a_world_lives() {
         }
         ran = tick + 1;
         soak.play().unwrap();
-        if (provoked as f64) < done * divergences as f64 {
+        if f64::from(provoked) < done * divergences as f64 {
             soak.provoke().unwrap();
             provoked += 1;
         }
         soak.step();
-        if done * LOOKS as f64 >= told as f64 {
+        if done * LOOKS as f64 >= f64::from(told) {
             told += 1;
             let (minute, wall) = (tick as f32 / 1800.0, start.elapsed().as_secs_f32() / 60.0);
             println!(

@@ -365,7 +365,9 @@ impl Controller {
         let acts = report.skill.is_none() && report.pending_skill.is_none() && !report.fallen;
         let memory = &mut self.state.give_way;
         match self.config.give_way.filter(|_| acts) {
-            Some(give_way) => give_way.adjusted(memory, self.pack.graph(), state, command, dt),
+            Some(give_way) => {
+                give_way.adjusted(memory, (self.pack.graph(), report.position), state, command, dt)
+            }
             None => {
                 *memory = GiveWayState::default();
                 *command

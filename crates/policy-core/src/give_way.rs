@@ -6,6 +6,8 @@
 use crate::command::{Command, Goal};
 use crate::graph::PolicyGraph;
 use crate::heading::Heading;
+use crate::ids::NodeId;
+use crate::path::GraphPosition;
 use crate::state::CharacterState;
 
 /// Cosine of the largest angle off the heading at which a target is ahead. A character that turns slows down by itself.
@@ -14,11 +16,11 @@ const AHEAD: f32 = 0.8;
 /// Time constant of the low-pass on the speed, seconds.
 const SPEED_SECS: f32 = 0.1;
 
-/// Time constant with which the pace fades, seconds.
-const PACE_SECS: f32 = 1.5;
+/// Time constants with which the pace rises to the speed and fades, seconds. The first steps of a start are no pace yet.
+const PACE_SECS: [f32; 2] = [0.4, 1.5];
 
 /// Slowest pace that can be held up, metres per second.
-const LEAST_PACE: f32 = 0.5;
+const LEAST_PACE: f32 = 0.6;
 
 /// Stops a character for a moment when it loses much of its speed towards its target without being asked to.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -48,18 +50,19 @@ pub(crate) struct GiveWayState {
 
 impl GiveWay {
     /// The command, or the same at the beginning of its path and without a target while the character gives way. Goals that are
-    /// no path's, and paths that don't begin with standing, stay as they are.
+    /// no path's, and paths that don't begin with standing, stay as they are. So does a command of a character at a `position` in a
+    /// low gait: under a low roof there is no room to stand.
     #[must_use]
     pub(crate) fn adjusted(
         self,
         memory: &mut GiveWayState,
-        graph: &PolicyGraph,
+        (graph, position): (&PolicyGraph, GraphPosition),
         state: &CharacterState,
         command: &Command,
         dt: f32,
     ) -> Command {
         let asked = asked_mps(graph, command).zip(command.target);
-        let Some((asked_mps, target)) = asked else {
+        let Some((asked_mps, target)) = asked.filter(|_| !is_low(graph, position, command)) else {
             *memory = GiveWayState::default();
             return *command;
         };
@@ -67,7 +70,10 @@ impl GiveWay {
         let to_target = (target - root.position.truncate()).normalize_or_zero();
         let along = root.linear_velocity.truncate().dot(to_target);
         memory.speed += (along - memory.speed) * (dt / SPEED_SECS).min(1.0);
-        memory.pace = (memory.pace * (1.0 - dt / PACE_SECS)).max(memory.speed).min(asked_mps);
+        let [rises, fades] = PACE_SECS;
+        let faded = memory.pace * (1.0 - dt / fades);
+        let risen = memory.pace + (memory.speed - memory.pace) * (dt / rises).min(1.0);
+        memory.pace = faded.max(risen).min(asked_mps);
         memory.stop_secs = (memory.stop_secs - dt).max(0.0);
         let ahead = Heading::from_rotation(root.rotation).direction().dot(to_target) > AHEAD;
         if ahead && memory.pace > LEAST_PACE && memory.speed < self.held_up_share * memory.pace {
@@ -80,6 +86,15 @@ impl GiveWay {
             _ => *command,
         }
     }
+}
+
+/// True between or at gaits of which one falls lower than standing does, the first of the command's path.
+fn is_low(graph: &PolicyGraph, position: GraphPosition, command: &Command) -> bool {
+    let Goal::Path { path, .. } = command.goal else { return false };
+    let Some(first) = graph.paths().get(path.index()).map(|p| p.nodes()[0]) else { return false };
+    let fall_height = |node: NodeId| graph.node(node).fall_height.unwrap_or(0.0);
+    let acts = [(position.from, 1.0 - position.t), (position.to, position.t)];
+    acts.into_iter().any(|(node, share)| share > 0.0 && fall_height(node) < fall_height(first))
 }
 
 /// Speed that a command asks for on a path that begins with standing, metres per second.
