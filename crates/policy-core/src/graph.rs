@@ -202,6 +202,12 @@ impl PolicyGraph {
         &self.nodes[id.index()]
     }
 
+    /// True for a node that is the variant of another one for rough ground.
+    #[must_use]
+    pub fn is_variant(&self, id: NodeId) -> bool {
+        self.nodes.iter().any(|node| node.rough_ground == Some(id))
+    }
+
     /// Edges.
     #[must_use]
     pub fn edges(&self) -> &[Edge] {

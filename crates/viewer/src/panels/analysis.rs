@@ -2,6 +2,7 @@
 
 use egui::{Align2, Color32, FontId, Painter, Pos2, Rect, Sense, Stroke, Ui, vec2};
 use glam::{Quat, Vec3};
+use policy_core::NodeId;
 
 use super::{PRESENT, REQUESTED, policy_colour};
 use crate::analysis::Analysis;
@@ -87,6 +88,10 @@ fn parameters(ui: &Ui, orbit: &Orbit, app: &App, analysis: &Analysis) {
     }
     for (index, node) in graph.nodes().iter().enumerate() {
         let at = orbit.at(map.nodes[index]);
+        if graph.is_variant(NodeId::new(index)) {
+            painter.circle_filled(at, 2.5, policy_colour(index));
+            continue;
+        }
         painter.circle_filled(at, 5.0, policy_colour(index));
         let text = ui.visuals().text_color();
         painter.text(

@@ -12,8 +12,13 @@ const NODE: f32 = 9.0;
 pub(super) fn show(ui: &mut Ui, app: &App, commands: &mut Vec<ViewerCommand>) {
     let graph = app.sim.pack().graph();
     let (rect, response) = ui.allocate_exact_size(vec2(ui.available_width(), HEIGHT), Sense::click());
-    let count = graph.nodes().len();
-    let place = |node: NodeId| on_circle(rect, node.index(), count);
+    // Variants for rough ground are rings around their gaits.
+    let shown: Vec<NodeId> =
+        (0..graph.nodes().len()).map(NodeId::new).filter(|node| !graph.is_variant(*node)).collect();
+    let place = |node: NodeId| {
+        let at = shown.iter().position(|n| *n == node).unwrap_or(0);
+        on_circle(rect, at, shown.len())
+    };
     let report = app.sim.player().report();
     let furthest = graph.edges().iter().map(|e| e.distance).fold(f32::MIN_POSITIVE, f32::max);
     let painter = ui.painter();
@@ -27,13 +32,19 @@ pub(super) fn show(ui: &mut Ui, app: &App, commands: &mut Vec<ViewerCommand>) {
         painter.text(a.lerp(b, 0.5), Align2::CENTER_CENTER, text, small.clone(), ui.visuals().text_color());
     }
     let running = report.skill.map(|s| app.sim.pack().skills()[s.skill.index()].policy);
-    for (index, node) in graph.nodes().iter().enumerate() {
-        let (id, policy) = (NodeId::new(index), PolicyId::new(index));
-        let weight: f32 =
-            report.blend.terms().iter().filter(|t| t.policy == policy).map(|t| t.weights[0]).sum();
+    let weight_of = |policy: PolicyId| -> f32 {
+        report.blend.terms().iter().filter(|t| t.policy == policy).map(|t| t.weights[0]).sum()
+    };
+    for &id in &shown {
+        let (node, policy) = (graph.node(id), PolicyId::from(id));
+        let rough = node.rough_ground.map_or(0.0, |variant| weight_of(PolicyId::from(variant)));
+        let weight = weight_of(policy) + rough;
         let colour = if running == Some(policy) { REQUESTED } else { lit(weight) };
         let at = place(id);
         painter.circle(at, NODE, colour, Stroke::new(1.5, ui.visuals().text_color()));
+        if rough > 0.0 {
+            painter.circle_stroke(at, NODE + 4.0, Stroke::new(3.0, lit(rough)));
+        }
         let out = (at - rect.center()).normalized() * 18.0;
         let text = ui.visuals().text_color();
         painter.text(at + out, Align2::CENTER_CENTER, &node.name, FontId::proportional(12.0), text);
@@ -43,10 +54,12 @@ pub(super) fn show(ui: &mut Ui, app: &App, commands: &mut Vec<ViewerCommand>) {
         let at = place(position.from).lerp(place(position.to), position.t);
         painter.circle(at, 5.0, PRESENT, Stroke::new(1.0, Color32::WHITE));
     }
-    let response = response.on_hover_text("Click a policy: the character goes there.");
+    let response = response.on_hover_text(
+        "Click a policy: the character goes there. A ring: its variant for rough ground acts.",
+    );
     if let (true, Some(pointer)) = (response.clicked(), response.interact_pointer_pos()) {
         let near = |n: &NodeId| place(*n).distance(pointer);
-        let nearest = (0..count).map(NodeId::new).min_by(|a, b| near(a).total_cmp(&near(b)));
+        let nearest = shown.iter().copied().min_by(|a, b| near(a).total_cmp(&near(b)));
         if let Some(node) = nearest.filter(|n| near(n) < 2.0 * NODE) {
             commands.push(ViewerCommand::Goal(Some(Goal::Node(node))));
         }
@@ -59,7 +72,9 @@ fn walk_to(ui: &mut Ui, app: &App, commands: &mut Vec<ViewerCommand>) {
     let graph = app.sim.pack().graph();
     ui.horizontal_wrapped(|ui| {
         ui.label("Go to");
-        for (index, node) in graph.nodes().iter().enumerate() {
+        let gaits =
+            graph.nodes().iter().enumerate().filter(|(index, _)| !graph.is_variant(NodeId::new(*index)));
+        for (index, node) in gaits {
             let told = format!("Blend over to {}, whatever the triggers say", node.name);
             if ui.small_button(&node.name).on_hover_text(told).clicked() {
                 commands.push(ViewerCommand::Goal(Some(Goal::Node(NodeId::new(index)))));
