@@ -13,9 +13,8 @@ use crate::controller_state::{ControllerState, StateError};
 use crate::evaluator::{BlendEvaluator, BlendMode};
 use crate::fall::{Heights, step_heights};
 use crate::footing::{next_unevenness, on_ground};
-use crate::give_way::{GiveWay, GiveWayState};
+use crate::give_way::GiveWayState;
 use crate::ids::{NodeId, PolicyId, SkillId};
-use crate::kernel::Arithmetic;
 use crate::observation::{observe_into, target_input};
 use crate::pack::CharacterPack;
 use crate::path::GraphPosition;
@@ -23,13 +22,14 @@ use crate::report::{StateFault, TickReport};
 use crate::scorer::Scorer;
 use crate::skill::SkillEnd;
 use crate::state::{CharacterState, JointTargets};
-use crate::steering::{Steering, SteeringState};
+use crate::steering::SteeringState;
 use crate::strafe::{face_in_observation, strafing_share};
-use crate::turn_assist::TurnAssist;
 
+mod config;
 mod skills;
 mod swap;
 
+pub use self::config::ControllerConfig;
 pub use self::swap::SwapError;
 
 /// Longest time a tick may stand for, seconds.
@@ -43,52 +43,6 @@ const ASSIST_SECONDS: f32 = 0.1;
 
 /// No action is larger than this; policies stay within about 1.
 const ACTION_LIMIT: f32 = 10.0;
-
-/// Choices that are made once for a controller.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct ControllerConfig {
-    /// How products are summed.
-    pub arithmetic: Arithmetic,
-    /// Cache the parameters of a resting blend; see [`BlendEvaluator::new`].
-    pub cache_blends: bool,
-    /// Start the pack's recovery skill when the character has fallen.
-    pub auto_recover: bool,
-    /// Start it too when the character is to stand up out of a low gait and has not within 0.1 s. Otherwise it acts to and
-    /// fro along the edge from 0.8 s on, and has fallen after [`RISE_SECONDS`](crate::training::RISE_SECONDS).
-    pub assist_rise: bool,
-    /// Node to start at. One that is not there means the first.
-    pub start: NodeId,
-    /// How a blend becomes an action.
-    pub blend_mode: BlendMode,
-    /// Time over which joint targets pass from one policy to the other when a skill starts or ends, seconds; 0 for a jump.
-    pub handover_secs: f32,
-    /// Slow down fast gaits while the target lies far off the heading, the default; `None` to leave turning to the policies.
-    pub turn_assist: Option<TurnAssist>,
-    /// Hold the course and lead into turns, the default; `None` to give the policies the target as it is.
-    pub steering: Option<Steering>,
-    /// Stop for a moment when something holds the character up, the default; `None` to walk on against it.
-    pub give_way: Option<GiveWay>,
-    /// Blend gaits with their variants for rough ground where the ground is uneven, the default; where the pack has none, nothing changes.
-    pub footing: bool,
-}
-
-impl Default for ControllerConfig {
-    fn default() -> Self {
-        Self {
-            arithmetic: Arithmetic::Reproducible,
-            cache_blends: true,
-            auto_recover: true,
-            assist_rise: true,
-            start: NodeId::new(0),
-            blend_mode: BlendMode::Parameters,
-            handover_secs: 0.0,
-            turn_assist: Some(TurnAssist::default()),
-            steering: Some(Steering::default()),
-            give_way: Some(GiveWay::default()),
-            footing: true,
-        }
-    }
-}
 
 /// Steers one character: turns what it senses and what the game asks into joint targets.
 #[derive(Clone, Debug)]
