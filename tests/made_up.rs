@@ -29,6 +29,7 @@ pub fn pack(model: &Model, mjcf: &str) -> CharacterPack {
         speed_mps: None,
         strafes: false,
         rough_ground: None,
+        agile: None,
         origin: "made up".into(),
     };
     let end = EndEntry {

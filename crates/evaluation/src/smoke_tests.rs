@@ -57,6 +57,7 @@ fn pack(falls: bool) -> Arc<CharacterPack> {
         speed_mps: Some(if name == "idle" { 0.0 } else { 1.0 }),
         strafes: false,
         rough_ground: None,
+        agile: None,
         origin: "made up".into(),
     };
     let edge = |a: &str, b: &str| EdgeEntry {

@@ -351,6 +351,8 @@ typedef struct PsConfig {
   float give_way_stop_secs;
   // Not 0: blend gaits with their variants for rough ground where the ground is uneven.
   int32_t footing;
+  // Not 0: blend gaits with their agile variants while the character does not move yet as it is asked to.
+  int32_t agility;
 } PsConfig;
 
 // Motion of one body: of its frame as in the MJCF, not of its centre of mass. World space, all at one moment.

@@ -77,6 +77,8 @@ pub struct PsConfig {
     pub give_way_stop_secs: f32,
     /// Not 0: blend gaits with their variants for rough ground where the ground is uneven.
     pub footing: i32,
+    /// Not 0: blend gaits with their agile variants while the character does not move yet as it is asked to.
+    pub agility: i32,
 }
 
 impl Default for PsConfig {
@@ -112,6 +114,7 @@ impl Default for PsConfig {
             give_way_held_up_share: give_way.held_up_share,
             give_way_stop_secs: give_way.stop_secs,
             footing: config.footing.into(),
+            agility: config.agility.into(),
         }
     }
 }
@@ -161,6 +164,7 @@ impl PsConfig {
             steering: (self.steering != 0).then_some(steering),
             give_way: (self.give_way != 0).then_some(give_way),
             footing: self.footing != 0,
+            agility: self.agility != 0,
         })
     }
 }

@@ -7,12 +7,13 @@ use alloc::vec::Vec;
 use glam::Vec2;
 
 use crate::action::ActionScaling;
+use crate::agility::next_urgency;
 use crate::blend::Blend;
 use crate::command::Command;
 use crate::controller_state::{ControllerState, StateError};
 use crate::evaluator::{BlendEvaluator, BlendMode};
 use crate::fall::{Heights, step_heights};
-use crate::footing::{next_unevenness, on_ground};
+use crate::footing::next_unevenness;
 use crate::give_way::GiveWayState;
 use crate::ids::{NodeId, PolicyId, SkillId};
 use crate::observation::{observe_into, target_input};
@@ -24,6 +25,7 @@ use crate::skill::SkillEnd;
 use crate::state::{CharacterState, JointTargets};
 use crate::steering::SteeringState;
 use crate::strafe::{face_in_observation, strafing_share};
+use crate::variants::{Shares, with_variants};
 
 mod config;
 mod skills;
@@ -232,6 +234,13 @@ impl Controller {
         let command = assist.map_or(*command, |a| a.adjusted(self.pack.graph(), state, command));
         let command = self.giving_way(state, &command, dt);
         self.travel(&command, heights, dt);
+        self.state.urgency = match self.config.agility {
+            true => {
+                let place = (self.pack.graph(), self.state.report.position);
+                next_urgency(self.state.urgency, place, state, command.target, dt)
+            }
+            false => 0.0,
+        };
         self.choose_blend(state, &command);
         self.observe(state, &command, dt);
         true
@@ -305,7 +314,8 @@ impl Controller {
             (None, Some(blend)) => blend,
             (None, None) => {
                 let blend = self.state.fall.acting_position(report.position).blend();
-                on_ground(self.pack.graph(), blend, self.state.unevenness)
+                let shares = Shares { rough_ground: self.state.unevenness, agile: self.state.urgency };
+                with_variants(self.pack.graph(), blend, shares)
             }
         };
         if let (BlendMode::Switch, Some(policy)) = (self.config.blend_mode, report.blend.strongest()) {

@@ -39,6 +39,8 @@ pub struct ControllerState {
     pub(crate) give_way: GiveWayState,
     /// How uneven the ground is, in [0, 1].
     pub(crate) unevenness: f32,
+    /// How far the character is from what it is asked to do, in [0, 1].
+    pub(crate) urgency: f32,
 }
 
 /// Why a state can't be restored. The controller is unchanged.
@@ -89,6 +91,7 @@ impl ControllerState {
             steering: SteeringState::default(),
             give_way: GiveWayState::default(),
             unevenness: 0.0,
+            urgency: 0.0,
         }
     }
 
@@ -116,6 +119,7 @@ impl ControllerState {
         self.steering = other.steering;
         self.give_way = other.give_way;
         self.unevenness = other.unevenness;
+        self.urgency = other.urgency;
     }
 
     /// Makes it the state of a new controller again.
@@ -132,6 +136,7 @@ impl ControllerState {
         self.steering = SteeringState::default();
         self.give_way = GiveWayState::default();
         self.unevenness = 0.0;
+        self.urgency = 0.0;
     }
 
     pub(crate) fn same_size(&self, other: &Self) -> bool {
@@ -169,8 +174,9 @@ impl ControllerState {
         let mut numbers = self.targets.iter().chain(&self.handover_from).chain(self.history.parts().0);
         let times = [self.fall.low_seconds, self.fall.rising_seconds, self.handover_secs, self.pending_secs];
         let steering = [self.steering.velocity.x, self.steering.velocity.y, self.steering.trim];
-        let give_way = [self.give_way.speed, self.give_way.pace, self.give_way.stop_secs, self.unevenness];
-        let mut others = times.iter().chain(&steering).chain(&give_way);
+        let give_way = [self.give_way.speed, self.give_way.pace, self.give_way.stop_secs];
+        let shares = [self.unevenness, self.urgency];
+        let mut others = times.iter().chain(&steering).chain(&give_way).chain(&shares);
         let finite = numbers.all(|n| n.is_finite()) && others.all(|n| n.is_finite());
         field("numbers", "finite numbers", finite)?;
         let progress = r.skill.map_or([0.0; 2], |s| [s.seconds, s.held_seconds]);

@@ -178,6 +178,9 @@ pub struct PolicyEntry {
     /// Name of its variant for rough ground; see [`Node::rough_ground`](crate::training::Node::rough_ground).
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub rough_ground: Option<String>,
+    /// Name of its agile variant; see [`Node::agile`](crate::training::Node::agile).
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub agile: Option<String>,
     /// Where the policy comes from: recipe, samples, seed.
     #[serde(default)]
     pub origin: String,

@@ -27,6 +27,8 @@ pub struct Node {
     pub strafes: bool,
     /// Variant of the policy that it is blended with on uneven ground.
     pub rough_ground: Option<NodeId>,
+    /// Variant of the policy that it is blended with while the character does not move yet as it is asked to.
+    pub agile: Option<NodeId>,
 }
 
 /// A straight line between the parameters of two policies that is itself a good policy.
@@ -202,10 +204,10 @@ impl PolicyGraph {
         &self.nodes[id.index()]
     }
 
-    /// True for a node that is the variant of another one for rough ground.
+    /// True for a node that is a variant of another one: for rough ground, or an agile one.
     #[must_use]
     pub fn is_variant(&self, id: NodeId) -> bool {
-        self.nodes.iter().any(|node| node.rough_ground == Some(id))
+        self.nodes.iter().any(|node| [node.rough_ground, node.agile].contains(&Some(id)))
     }
 
     /// Edges.

@@ -60,6 +60,7 @@ extern crate std;
 
 mod action;
 mod actuation;
+mod agility;
 mod batch;
 pub mod bindings;
 mod blend;
@@ -102,6 +103,7 @@ mod steering;
 mod strafe;
 pub mod training;
 mod turn_assist;
+mod variants;
 
 pub use glam;
 

@@ -60,15 +60,16 @@ impl CharacterPack {
         let names: Vec<&str> = manifest.policies.iter().map(|p| p.name.as_str()).collect();
         let nodes = manifest.policies.iter().map(|p| {
             let field = || alloc::format!("policy \"{}\"", p.name);
+            let variant = |name: &Option<alloc::string::String>| {
+                name.as_ref().map(|name| find_node(field(), name, &names)).transpose()
+            };
             Ok(Node {
                 name: p.name.clone(),
                 fall_height: p.fall_height,
                 speed_mps: p.speed_mps,
                 strafes: p.strafes,
-                rough_ground: match &p.rough_ground {
-                    None => None,
-                    Some(name) => Some(find_node(field(), name, &names)?),
-                },
+                rough_ground: variant(&p.rough_ground)?,
+                agile: variant(&p.agile)?,
             })
         });
         let nodes = nodes.collect::<Result<Vec<_>, PackError>>()?;

@@ -181,6 +181,7 @@ fn policies(plan: &PackPlan, trained: &[TrainedSkill]) -> Result<(Vec<Mlp>, Vec<
             speed_mps: planned.speed_mps,
             strafes: planned.strafes,
             rough_ground: planned.rough_ground.clone(),
+            agile: planned.agile.clone(),
             origin: skill.origin.clone(),
         });
     }

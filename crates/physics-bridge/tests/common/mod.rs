@@ -107,6 +107,7 @@ fn policy_entry(name: &str, sizes: &[usize]) -> PolicyEntry {
         speed_mps: None,
         strafes: false,
         rough_ground: None,
+        agile: None,
         origin: "made up".into(),
     }
 }

@@ -33,6 +33,9 @@ pub struct ControllerConfig {
     pub give_way: Option<GiveWay>,
     /// Blend gaits with their variants for rough ground where the ground is uneven, the default; where the pack has none, nothing changes.
     pub footing: bool,
+    /// Blend gaits with their agile variants while the character does not move yet as it is asked to, the default; where the pack has
+    /// none, nothing changes.
+    pub agility: bool,
 }
 
 impl Default for ControllerConfig {
@@ -49,6 +52,7 @@ impl Default for ControllerConfig {
             steering: Some(Steering::default()),
             give_way: Some(GiveWay::default()),
             footing: true,
+            agility: true,
         }
     }
 }

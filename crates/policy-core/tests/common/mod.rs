@@ -68,6 +68,7 @@ pub fn manifest() -> Manifest {
         speed_mps: None,
         strafes: false,
         rough_ground: None,
+        agile: None,
         origin: "made up".into(),
     };
     let edge = |a: &str, b: &str| EdgeEntry {

@@ -56,6 +56,9 @@ pub(crate) struct Arguments {
     /// Leave variants for rough ground out: gaits act alone on every ground.
     #[arg(long)]
     no_footing: bool,
+    /// Leave agile variants out: gaits turn, start and stop by themselves.
+    #[arg(long)]
+    no_agility: bool,
     /// Seconds in which the player's controller passes from the joint targets before a skill to those of the skill.
     #[arg(long, default_value_t = 0.0, value_parser = seconds)]
     handover_secs: f32,
@@ -104,13 +107,14 @@ pub(crate) fn run(
     let handover_secs = arguments.handover_secs;
     let steering = (!arguments.no_steering).then(Steering::default);
     let give_way = (!arguments.no_give_way).then(GiveWay::default);
-    let footing = !arguments.no_footing;
+    let (footing, agility) = (!arguments.no_footing, !arguments.no_agility);
     let config = ControllerConfig {
         steering,
         turn_assist,
         handover_secs,
         give_way,
         footing,
+        agility,
         ..ControllerConfig::default()
     };
     let progress = Progress::bar();

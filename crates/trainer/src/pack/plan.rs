@@ -64,6 +64,9 @@ pub struct PlannedPolicy {
     /// Name of its variant for rough ground.
     #[serde(default)]
     pub rough_ground: Option<String>,
+    /// Name of its agile variant.
+    #[serde(default)]
+    pub agile: Option<String>,
 }
 
 impl PackPlan {
@@ -84,7 +87,9 @@ impl PackPlan {
     pub fn only(mut self, trained: impl Fn(&str) -> bool) -> Self {
         self.policies.retain(|p| trained(&p.name));
         for policy in &mut self.policies {
-            policy.rough_ground = policy.rough_ground.take().filter(|variant| trained(variant));
+            for variant in [&mut policy.rough_ground, &mut policy.agile] {
+                *variant = variant.take().filter(|name| trained(name));
+            }
         }
         self.edges.retain(|e| e.nodes.iter().all(|n| trained(n)));
         let edges = self.edges.clone();

@@ -37,13 +37,14 @@ pub(super) fn show(ui: &mut Ui, app: &App, commands: &mut Vec<ViewerCommand>) {
     };
     for &id in &shown {
         let (node, policy) = (graph.node(id), PolicyId::from(id));
-        let rough = node.rough_ground.map_or(0.0, |variant| weight_of(PolicyId::from(variant)));
-        let weight = weight_of(policy) + rough;
+        let of_variant = |variant: Option<NodeId>| variant.map_or(0.0, |id| weight_of(PolicyId::from(id)));
+        let variants = of_variant(node.rough_ground) + of_variant(node.agile);
+        let weight = weight_of(policy) + variants;
         let colour = if running == Some(policy) { REQUESTED } else { lit(weight) };
         let at = place(id);
         painter.circle(at, NODE, colour, Stroke::new(1.5, ui.visuals().text_color()));
-        if rough > 0.0 {
-            painter.circle_stroke(at, NODE + 4.0, Stroke::new(3.0, lit(rough)));
+        if variants > 0.0 {
+            painter.circle_stroke(at, NODE + 4.0, Stroke::new(3.0, lit(variants)));
         }
         let out = (at - rect.center()).normalized() * 18.0;
         let text = ui.visuals().text_color();
@@ -55,7 +56,7 @@ pub(super) fn show(ui: &mut Ui, app: &App, commands: &mut Vec<ViewerCommand>) {
         painter.circle(at, 5.0, PRESENT, Stroke::new(1.0, Color32::WHITE));
     }
     let response = response.on_hover_text(
-        "Click a policy: the character goes there. A ring: its variant for rough ground acts.",
+        "Click a policy: the character goes there. A ring: a variant of it acts, for rough ground or in turns and starts.",
     );
     if let (true, Some(pointer)) = (response.clicked(), response.interact_pointer_pos()) {
         let near = |n: &NodeId| place(*n).distance(pointer);

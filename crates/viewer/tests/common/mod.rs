@@ -134,6 +134,7 @@ pub fn quadruped() -> CharacterPack {
         speed_mps: Some(speed_mps),
         strafes: false,
         rough_ground: None,
+        agile: None,
         origin: "made up".into(),
     };
     let manifest = Manifest {

@@ -78,6 +78,7 @@ pub(super) fn policy_graph(
         speed_mps: Some(node.speed_mps),
         strafes: node.strafe.is_some(),
         rough_ground: None,
+        agile: None,
     };
     let policies = vec![policy; nodes.len()];
     PolicyGraph::from_parts(nodes.iter().map(known).collect(), &edges, paths, &policies)

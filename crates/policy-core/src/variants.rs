@@ -1,0 +1,43 @@
+//! Variants: a policy gives shares of its weight to others that were trained on from it, one for rough ground and one that turns,
+//! starts or stops quickly.
+//!
+//! All are of one family, so the straight lines between their parameters are good policies too.
+
+use crate::blend::{Blend, BlendTerm};
+use crate::graph::PolicyGraph;
+use crate::ids::{NodeId, PolicyId};
+
+/// How far the variants of a policy act, each in [0, 1].
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Shares {
+    /// Share of the variant for rough ground.
+    pub(crate) rough_ground: f32,
+    /// Share of the agile variant in what the one for rough ground leaves.
+    pub(crate) agile: f32,
+}
+
+/// The blend with a share of each policy given to its variants, where it has them.
+pub(crate) fn with_variants(graph: &PolicyGraph, blend: Blend, shares: Shares) -> Blend {
+    if shares.rough_ground <= 0.0 && shares.agile <= 0.0 {
+        return blend;
+    }
+    let mut shared = Blend::default();
+    for term in blend.terms() {
+        let node = graph.nodes().get(term.policy.index());
+        let variant = |of: fn(&crate::graph::Node) -> Option<NodeId>, share: f32| {
+            node.and_then(of).map(|variant| (PolicyId::from(variant), share))
+        };
+        let rough = variant(|node| node.rough_ground, shares.rough_ground);
+        let left = 1.0 - rough.map_or(0.0, |(_, share)| share);
+        let agile = variant(|node| node.agile, left * shares.agile);
+        let own = left - agile.map_or(0.0, |(_, share)| share);
+        let parts = [Some((term.policy, own)), rough, agile];
+        for (policy, share) in parts.into_iter().flatten().filter(|(_, share)| *share > 0.0) {
+            let weights = term.weights.map(|weight| share * weight);
+            if shared.push(BlendTerm { policy, weights }).is_err() {
+                return blend;
+            }
+        }
+    }
+    shared
+}

@@ -1,0 +1,163 @@
+//! Agility: gaits are blended with their agile variants while the character does not move as it is asked to, and act alone once it does.
+
+mod common;
+
+use std::sync::Arc;
+
+use common::standing;
+use glam::{Quat, Vec2, Vec3};
+use policy_core::{
+    BodyId, CharacterPack, CharacterState, Command, Controller, ControllerConfig, ControllerState, Goal,
+    PathId, Skeleton,
+};
+
+const DT: f32 = 1.0 / 30.0;
+
+/// The made-up pack. Its walk goes at 1 m/s and has the roll's policy as its agile variant, and on request the standing one as its
+/// variant for rough ground.
+fn pack(rough: bool) -> Arc<CharacterPack> {
+    let mut manifest = common::manifest();
+    manifest.policies[0].speed_mps = Some(0.0);
+    manifest.policies[1].speed_mps = Some(1.0);
+    manifest.policies[1].agile = Some("roll".into());
+    manifest.policies[1].rough_ground = rough.then(|| "idle".into());
+    Arc::new(CharacterPack::from_parts(manifest, common::tensors(0.0)).unwrap())
+}
+
+fn controller(agility: bool) -> Controller {
+    let config = ControllerConfig { agility, steering: None, give_way: None, ..ControllerConfig::default() };
+    let mut controller = Controller::with_config(pack(false), config);
+    for _ in 0..90 {
+        tick(&mut controller, &walking(1.0));
+    }
+    controller
+}
+
+/// Faces along x and moves that way.
+fn walking(speed: f32) -> CharacterState {
+    let mut state = standing();
+    for index in 0..Skeleton::humanoid().body_count() {
+        state.body_mut(BodyId::new(index)).linear_velocity = Vec3::X * speed;
+    }
+    state
+}
+
+fn towards(target: Vec2) -> Command {
+    let goal = Goal::Path { path: PathId::new(0), coordinate: 1.0 };
+    Command { goal, target: Some(target), ..Command::default() }
+}
+
+/// One tick at a walk towards a target far ahead. Returns the policies and their weights in the first layer.
+fn tick(controller: &mut Controller, state: &CharacterState) -> Vec<(usize, f32)> {
+    tick_towards(controller, state, Vec2::X)
+}
+
+fn tick_towards(controller: &mut Controller, state: &CharacterState, direction: Vec2) -> Vec<(usize, f32)> {
+    let target = state.root().position.truncate() + 10.0 * direction;
+    controller.tick(state, &towards(target), DT);
+    controller.report().blend.terms().iter().map(|term| (term.policy.index(), term.weights[0])).collect()
+}
+
+fn policy(name: &str) -> usize {
+    common::manifest().policies.iter().position(|policy| policy.name == name).unwrap()
+}
+
+fn weight(terms: &[(usize, f32)], policy: usize) -> f32 {
+    terms.iter().filter(|term| term.0 == policy).map(|term| term.1).sum()
+}
+
+#[test]
+fn a_gait_acts_alone_while_it_goes_as_asked_and_as_its_variant_in_a_turn() {
+    let mut controller = controller(true);
+    assert_eq!(tick(&mut controller, &walking(1.0)), [(1, 1.0)]);
+    assert_eq!(tick(&mut controller, &walking(0.75)), [(1, 1.0)], "a speed that sways is no error");
+    let roll = policy("roll");
+    let shares: Vec<f32> =
+        (0..4).map(|_| weight(&tick_towards(&mut controller, &walking(1.0), -Vec2::X), roll)).collect();
+    assert!((shares[0] - 1.0 / 3.0).abs() < 1e-5, "a tenth of a second to cross: {shares:?}");
+    assert_eq!(shares[3], 1.0);
+    let back = tick(&mut controller, &walking(1.0));
+    assert!((weight(&back, 1) - DT / 0.3).abs() < 1e-5, "0.3 s back: {back:?}");
+    for _ in 0..9 {
+        tick(&mut controller, &walking(1.0));
+    }
+    assert_eq!(tick(&mut controller, &walking(1.0)), [(1, 1.0)]);
+}
+
+#[test]
+fn a_stand_that_is_to_walk_and_a_heading_that_is_off_bring_it_in_too() {
+    let roll = policy("roll");
+    let mut starting = controller(true);
+    let mut turned = controller(true);
+    let mut aside = walking(0.0);
+    for index in 0..Skeleton::humanoid().body_count() {
+        let body = aside.body_mut(BodyId::new(index));
+        body.linear_velocity = Vec3::X;
+        body.rotation = Quat::from_rotation_z(1.2) * body.rotation;
+    }
+    for _ in 0..4 {
+        tick(&mut starting, &walking(0.0));
+        tick(&mut turned, &aside);
+    }
+    assert_eq!(weight(&tick(&mut starting, &walking(0.0)), roll), 1.0);
+    assert_eq!(weight(&tick(&mut turned, &aside), roll), 1.0);
+}
+
+#[test]
+fn without_agility_or_a_variant_nothing_changes() {
+    let mut off = controller(false);
+    let mut without = Controller::new(Arc::new(common::pack(0.0)));
+    for _ in 0..90 {
+        tick(&mut without, &walking(1.0));
+    }
+    for _ in 0..10 {
+        assert_eq!(tick_towards(&mut off, &walking(1.0), -Vec2::X), [(1, 1.0)]);
+        assert_eq!(tick_towards(&mut without, &walking(1.0), -Vec2::X), [(1, 1.0)]);
+    }
+}
+
+#[test]
+fn rough_ground_comes_before_agility_and_shares_add_up_to_one() {
+    let mut controller = Controller::with_config(pack(true), ControllerConfig::default());
+    for _ in 0..90 {
+        tick(&mut controller, &walking(1.0));
+    }
+    let mut state = walking(1.0);
+    state.ground_rises[Skeleton::humanoid().feet()[0].index()] = 0.1;
+    let (roll, rough) = (policy("roll"), policy("idle"));
+    let first = tick_towards(&mut controller, &state, -Vec2::X);
+    let third = 1.0 / 3.0;
+    assert!((weight(&first, rough) - third).abs() < 1e-5, "{first:?}");
+    assert!((weight(&first, roll) - (1.0 - third) * third).abs() < 1e-5, "{first:?}");
+    assert!((first.iter().map(|term| term.1).sum::<f32>() - 1.0).abs() < 1e-6);
+    for _ in 0..3 {
+        tick_towards(&mut controller, &state, -Vec2::X);
+    }
+    assert_eq!(tick_towards(&mut controller, &state, -Vec2::X), [(rough, 1.0)]);
+}
+
+#[test]
+fn a_state_saved_in_a_turn_goes_on_with_the_same_blend() {
+    let mut run = controller(true);
+    tick_towards(&mut run, &walking(1.0), -Vec2::X);
+    let mut state = ControllerState::new(run.pack());
+    run.save_into(&mut state);
+    let mut bytes = vec![0; state.byte_len()];
+    state.write_bytes(&mut bytes);
+    let mut other = controller(true);
+    let pack = Arc::clone(other.pack());
+    state.read_bytes(&pack, &bytes).unwrap();
+    other.restore(&state).unwrap();
+    assert!(run.report().blend.terms().len() > 1, "half-way");
+    for _ in 0..20 {
+        assert_eq!(tick(&mut other, &walking(1.0)), tick(&mut run, &walking(1.0)));
+    }
+}
+
+#[test]
+fn an_unknown_variant_is_refused_by_name() {
+    let mut manifest = common::manifest();
+    manifest.policies[1].agile = Some("dancer".into());
+    let error = CharacterPack::from_parts(manifest, common::tensors(0.0)).unwrap_err().to_string();
+    assert!(error.contains("dancer") && error.contains("policy"), "{error}");
+}
