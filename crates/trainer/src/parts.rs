@@ -38,7 +38,7 @@ impl Workspace {
     }
 
     /// Where a trained skill is: in its own run, else in one that trained it together with others.
-    fn trained(&self, name: &str) -> Result<Option<(Checkpoint, PathBuf)>> {
+    pub(crate) fn trained(&self, name: &str) -> Result<Option<(Checkpoint, PathBuf)>> {
         if let Some(together) = self.parents.as_ref().map(|run| self.newest(run)).transpose()?.flatten()
             && TrainedSkill::is_in(name, &together.0)
         {

@@ -26,6 +26,10 @@ pub struct Recipe {
     /// Skill it starts from and is pulled towards.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub parent: Option<String>,
+    /// Skill that it is a variant of: a run of this recipe starts from that skill's networks, in a run of its own or one that trained
+    /// several skills together, and is pulled towards nothing.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub variant_of: Option<String>,
     /// True to train the whole straight line from the parent, not only its end.
     pub edge: bool,
     /// Paths of skills that are trained together, each from its own run and with its own clips. Such a recipe has no parent

@@ -166,6 +166,8 @@ fn names_paths_and_edges_are_checked() {
     refused("\"a\"", "\"../a\"", "skill");
     refused("skill = \"a\"", "skill = \"a\"\nedge = true", "edge");
     refused("skill = \"a\"", "skill = \"a\"\nparent = \"a\"", "other skills");
+    refused("skill = \"a\"", "skill = \"a\"\nvariant_of = \"a\"", "other skills");
+    refused("skill = \"a\"", "skill = \"a\"\nvariant_of = \"b\"\nparent = \"c\"", "variant_of");
     refused("[[\"b\", \"c\"]]", "[[\"a\", \"c\"]]", "other skills");
     refused("[[\"b\", \"c\"]]", "[[\"b\", \"b\"]]", "none of them twice");
     refused("[[\"b\", \"c\"]]", "[[\"b\"]]", "at least two");

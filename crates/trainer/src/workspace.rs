@@ -20,7 +20,7 @@ use restore::{restore, skill_alone};
 /// What a new run begins with.
 #[derive(Debug)]
 pub enum Start {
-    /// The networks of the recipe's parents, or random ones.
+    /// The networks of the recipe's parents, or of the skill that it is a variant of, or random ones.
     Parents,
     /// The networks of this checkpoint; its path is named in errors. Of a run that trained several
     /// skills together, the networks of the recipe's skill.
@@ -87,7 +87,8 @@ impl Workspace {
             let ready = |r: &Recipe| {
                 let hand_over =
                     r.first().environment.reset.hand_over.iter().map(|hand_over| &hand_over.skill);
-                let mut needed = r.parent.iter().chain(r.paths.iter().flatten()).chain(hand_over);
+                let skills = r.parent.iter().chain(&r.variant_of).chain(r.paths.iter().flatten());
+                let mut needed = skills.chain(hand_over);
                 needed.all(|p| ordered.iter().any(|o| o.skill == *p))
             };
             let Some(skill) = left.values().find(|r| ready(r)).map(|r| r.skill.clone()) else {
@@ -193,13 +194,23 @@ impl Workspace {
         if let Some(Loaded { torn: Some(error), path, .. }) = &own {
             notes.push(format!("{error}; continuing from {}", path.display()));
         }
+        let start = match (&own, start, &recipe.variant_of) {
+            (None, Start::Parents, Some(skill)) => {
+                let checkpoint = self.trained(skill)?;
+                let checkpoint = checkpoint.with_context(|| {
+                    format!("{name} is a variant of {skill}, which is not trained yet")
+                })?;
+                Start::From { checkpoint, samples: 0 }
+            }
+            (_, start, _) => start,
+        };
         let begins = matches!((&own, &start), (None, Start::From { .. }));
         let earlier = match (own, start) {
             (Some(Loaded { checkpoint, path, .. }), _) => Some((checkpoint, path)),
             (None, Start::Continue(earlier)) => Some(earlier),
             (None, Start::From { checkpoint: (mut checkpoint, path), samples }) => {
                 if recipe.paths.is_empty() {
-                    checkpoint = skill_alone(checkpoint, &recipe.skill);
+                    checkpoint = skill_alone(checkpoint, recipe.variant_of.as_ref().unwrap_or(&recipe.skill));
                 }
                 (checkpoint.progress.samples, checkpoint.progress.secs) = (samples, 0.0);
                 Some((checkpoint, path))

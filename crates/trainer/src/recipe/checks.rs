@@ -28,7 +28,7 @@ impl Recipe {
     /// Names, clips, paths and phases.
     fn graph_checks(&self) -> Vec<Check> {
         let skills = || self.paths.iter().flatten();
-        let named = skills().chain(&self.parent);
+        let named = skills().chain(&self.parent).chain(&self.variant_of);
         let on_a_path = |ends: &[String; 2]| {
             let joined = |pair: &[String]| pair == ends;
             self.paths.iter().any(|path| path.windows(2).any(joined))
@@ -41,12 +41,18 @@ impl Recipe {
             (is_plain(&self.skill), "skill", names, self.skill.clone()),
             (
                 named.clone().all(|n| is_plain(n)),
-                "parent and paths",
+                "parent, variant_of and paths",
                 names,
-                format!("{:?} {:?}", self.parent, self.paths),
+                format!("{:?} {:?} {:?}", self.parent, self.variant_of, self.paths),
             ),
             (self.clips.iter().all(|c| is_plain(&c.name)), "clips.name", names, format!("{:?}", self.clips)),
-            (named.clone().all(|n| *n != self.skill), "parent and paths", "other skills", self.skill.clone()),
+            (named.clone().all(|n| *n != self.skill), "parent, variant_of and paths", "other skills", self.skill.clone()),
+            (
+                self.variant_of.is_none() || (paths == 0 && self.parent.is_none()),
+                "variant_of",
+                "none beside a parent or paths",
+                self.variant_of.clone().unwrap_or_default(),
+            ),
             (!self.edge || self.parent.is_some(), "edge", "a parent beside it", "none".into()),
             (
                 (clips == 0) != (paths == 0),

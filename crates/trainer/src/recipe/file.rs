@@ -105,6 +105,7 @@ struct RecipeFile {
     skill: String,
     character: Option<String>,
     parent: Option<String>,
+    variant_of: Option<String>,
     #[serde(default)]
     edge: bool,
     #[serde(default)]
@@ -190,8 +191,8 @@ pub(super) fn parse(path: &Path, text: &str) -> Result<Recipe, RecipeError> {
             )?,
         });
     }
-    let RecipeFile { skill, parent, edge, paths, halfway, clips, .. } = recipe;
-    Ok(Recipe { skill, parent, edge, paths, halfway, clips, phases })
+    let RecipeFile { skill, parent, variant_of, edge, paths, halfway, clips, .. } = recipe;
+    Ok(Recipe { skill, parent, variant_of, edge, paths, halfway, clips, phases })
 }
 
 /// True for lower-case letters, digits and underscores, at most 64: names that are safe as file names.
