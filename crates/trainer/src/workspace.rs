@@ -197,9 +197,8 @@ impl Workspace {
         let start = match (&own, start, &recipe.variant_of) {
             (None, Start::Parents, Some(skill)) => {
                 let checkpoint = self.trained(skill)?;
-                let checkpoint = checkpoint.with_context(|| {
-                    format!("{name} is a variant of {skill}, which is not trained yet")
-                })?;
+                let checkpoint = checkpoint
+                    .with_context(|| format!("{name} is a variant of {skill}, which is not trained yet"))?;
                 Start::From { checkpoint, samples: 0 }
             }
             (_, start, _) => start,

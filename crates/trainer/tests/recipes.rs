@@ -58,7 +58,11 @@ fn every_recipe_runs_and_binds_into_a_pack() {
         let before = actors(&run);
         if let Some(original) = &run.training.recipe.variant_of {
             let original = Checkpoint::load(&workspace.checkpoint(original)).unwrap();
-            assert_eq!(before, [original.networks["actor"].network.clone()], "{skill} starts from its original");
+            assert_eq!(
+                before,
+                [original.networks["actor"].network.clone()],
+                "{skill} starts from its original"
+            );
         }
         for _ in 0..2 {
             let report = run.advance().unwrap();

@@ -46,7 +46,12 @@ impl Recipe {
                 format!("{:?} {:?} {:?}", self.parent, self.variant_of, self.paths),
             ),
             (self.clips.iter().all(|c| is_plain(&c.name)), "clips.name", names, format!("{:?}", self.clips)),
-            (named.clone().all(|n| *n != self.skill), "parent, variant_of and paths", "other skills", self.skill.clone()),
+            (
+                named.clone().all(|n| *n != self.skill),
+                "parent, variant_of and paths",
+                "other skills",
+                self.skill.clone(),
+            ),
             (
                 self.variant_of.is_none() || (paths == 0 && self.parent.is_none()),
                 "variant_of",
