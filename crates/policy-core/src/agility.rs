@@ -25,41 +25,75 @@ const BRAKING_METRES: f32 = 1.0;
 /// Time from a gait to its variant, and back, seconds.
 const CROSS_SECS: [f32; 2] = [0.1, 0.3];
 
-/// How far the character is from what it is asked to do, in [0, 1], after a tick of `dt` seconds.
-///
-/// Without a target it is asked to stand, whatever the speed at its position on the graph. Gaits without a speed ask for nothing.
-pub(crate) fn next_urgency(
-    before: f32,
-    (graph, position): (&PolicyGraph, GraphPosition),
-    state: &CharacterState,
-    target: Option<Vec2>,
-    dt: f32,
-) -> f32 {
-    let now = asked_mps(graph, position).map_or(0.0, |speed| urgency(state, target, speed));
-    let [to_variant, to_gait] = CROSS_SECS;
-    now.clamp(before - dt / to_gait, before + dt / to_variant).clamp(0.0, 1.0)
+/// How far a character is from what it is asked to do, each in [0, 1].
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(crate) struct Urgency {
+    /// From going where it is asked to go: for the variants of gaits that move.
+    pub(crate) to_move: f32,
+    /// From standing, while it has no target: for the variants of gaits that stand.
+    pub(crate) to_stand: f32,
+}
+
+impl Urgency {
+    /// What it is after a tick of `dt` seconds at a position on the graph.
+    ///
+    /// A speed beyond the one asked for is no error: the way back to a slower gait brakes. Gaits without a speed ask for nothing.
+    pub(crate) fn next(
+        self,
+        (graph, position): (&PolicyGraph, GraphPosition),
+        state: &CharacterState,
+        target: Option<Vec2>,
+        dt: f32,
+    ) -> Self {
+        let speed = speed_mps(graph, position).filter(|speed| *speed > 0.0);
+        let now = match (target, speed) {
+            (None, _) => {
+                Self { to_stand: off_velocity(state.root().linear_velocity.truncate(), 0.0), to_move: 0.0 }
+            }
+            (Some(target), Some(speed)) => Self { to_move: off_course(state, target, speed), to_stand: 0.0 },
+            (Some(_), None) => Self::default(),
+        };
+        let [to_variant, to_gait] = CROSS_SECS;
+        let follow = |before: f32, now: f32| {
+            let now = if now.is_finite() { now } else { 0.0 };
+            now.clamp(before - dt / to_gait, before + dt / to_variant).clamp(0.0, 1.0)
+        };
+        Self { to_move: follow(self.to_move, now.to_move), to_stand: follow(self.to_stand, now.to_stand) }
+    }
 }
 
 /// Speed of a position on the graph, metres per second, where its gaits have one.
-fn asked_mps(graph: &PolicyGraph, position: GraphPosition) -> Option<f32> {
+fn speed_mps(graph: &PolicyGraph, position: GraphPosition) -> Option<f32> {
     let speed = |node| graph.node(node).speed_mps;
     let (from, to) = (speed(position.from)?, speed(position.to)?);
     Some(from + position.t * (to - from))
 }
 
-fn urgency(state: &CharacterState, target: Option<Vec2>, speed: f32) -> f32 {
+/// How far the velocity and the heading are from those that lead to a target at `speed`, in [0, 1].
+fn off_course(state: &CharacterState, target: Vec2, speed: f32) -> f32 {
     let root = state.root();
-    let to_target = target.map_or(Vec2::ZERO, |target| target - root.position.truncate());
+    let to_target = target - root.position.truncate();
     let distance = libm::sqrtf(to_target.length_squared());
+    if !(distance.is_finite() && distance > 1e-3) {
+        return 0.0;
+    }
     let near = (distance / BRAKING_METRES).min(1.0);
-    let direction = if distance > 1e-3 { to_target / distance } else { Vec2::ZERO };
-    let error = root.linear_velocity.truncate() - near * speed * direction;
-    let off_velocity = libm::sqrtf(error.length_squared()) / speed.max(LEAST_SPEED);
+    let direction = to_target / distance;
+    let velocity = root.linear_velocity.truncate();
+    let along = velocity.dot(direction);
+    let missing = (near * speed - along).max(0.0);
+    let error = velocity - (along + missing) * direction;
     let local = Heading::from_rotation(root.rotation).heading_from_world_2d(direction);
-    // A character that stands need not face its target.
-    let off_heading = if speed > 0.0 { near * libm::fabsf(libm::atan2f(local.y, local.x)) } else { 0.0 };
-    let within =
-        |value: f32, [begins, fully]: [f32; 2]| ((value - begins) / (fully - begins)).clamp(0.0, 1.0);
-    let most = within(off_velocity, OFF_VELOCITY).max(within(off_heading, OFF_HEADING));
-    if most.is_finite() { most } else { 0.0 }
+    let off_heading = near * libm::fabsf(libm::atan2f(local.y, local.x));
+    off_velocity(error, speed).max(within(off_heading, OFF_HEADING))
+}
+
+/// How far a velocity error counts at a speed, in [0, 1].
+fn off_velocity(error: Vec2, speed: f32) -> f32 {
+    within(libm::sqrtf(error.length_squared()) / speed.max(LEAST_SPEED), OFF_VELOCITY)
+}
+
+/// Where a value lies between two, in [0, 1].
+fn within(value: f32, [begins, fully]: [f32; 2]) -> f32 {
+    ((value - begins) / (fully - begins)).clamp(0.0, 1.0)
 }

@@ -7,7 +7,7 @@ use alloc::vec::Vec;
 use glam::Vec2;
 
 use crate::action::ActionScaling;
-use crate::agility::next_urgency;
+use crate::agility::Urgency;
 use crate::blend::Blend;
 use crate::command::Command;
 use crate::controller_state::{ControllerState, StateError};
@@ -237,9 +237,9 @@ impl Controller {
         self.state.urgency = match self.config.agility {
             true => {
                 let place = (self.pack.graph(), self.state.report.position);
-                next_urgency(self.state.urgency, place, state, command.target, dt)
+                self.state.urgency.next(place, state, command.target, dt)
             }
-            false => 0.0,
+            false => Urgency::default(),
         };
         self.choose_blend(state, &command);
         self.observe(state, &command, dt);

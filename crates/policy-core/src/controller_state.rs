@@ -5,6 +5,7 @@
 
 use alloc::vec::Vec;
 
+use crate::agility::Urgency;
 use crate::evaluator::BlendRest;
 use crate::fall::FallDetector;
 use crate::features::FrameHistory;
@@ -39,8 +40,8 @@ pub struct ControllerState {
     pub(crate) give_way: GiveWayState,
     /// How uneven the ground is, in [0, 1].
     pub(crate) unevenness: f32,
-    /// How far the character is from what it is asked to do, in [0, 1].
-    pub(crate) urgency: f32,
+    /// How far the character is from what it is asked to do.
+    pub(crate) urgency: Urgency,
 }
 
 /// Why a state can't be restored. The controller is unchanged.
@@ -91,7 +92,7 @@ impl ControllerState {
             steering: SteeringState::default(),
             give_way: GiveWayState::default(),
             unevenness: 0.0,
-            urgency: 0.0,
+            urgency: Urgency::default(),
         }
     }
 
@@ -136,7 +137,7 @@ impl ControllerState {
         self.steering = SteeringState::default();
         self.give_way = GiveWayState::default();
         self.unevenness = 0.0;
-        self.urgency = 0.0;
+        self.urgency = Urgency::default();
     }
 
     pub(crate) fn same_size(&self, other: &Self) -> bool {
@@ -175,7 +176,7 @@ impl ControllerState {
         let times = [self.fall.low_seconds, self.fall.rising_seconds, self.handover_secs, self.pending_secs];
         let steering = [self.steering.velocity.x, self.steering.velocity.y, self.steering.trim];
         let give_way = [self.give_way.speed, self.give_way.pace, self.give_way.stop_secs];
-        let shares = [self.unevenness, self.urgency];
+        let shares = [self.unevenness, self.urgency.to_move, self.urgency.to_stand];
         let mut others = times.iter().chain(&steering).chain(&give_way).chain(&shares);
         let finite = numbers.all(|n| n.is_finite()) && others.all(|n| n.is_finite());
         field("numbers", "finite numbers", finite)?;

@@ -3,6 +3,7 @@
 //!
 //! All are of one family, so the straight lines between their parameters are good policies too.
 
+use crate::agility::Urgency;
 use crate::blend::{Blend, BlendTerm};
 use crate::graph::PolicyGraph;
 use crate::ids::{NodeId, PolicyId};
@@ -12,13 +13,13 @@ use crate::ids::{NodeId, PolicyId};
 pub(crate) struct Shares {
     /// Share of the variant for rough ground.
     pub(crate) rough_ground: f32,
-    /// Share of the agile variant in what the one for rough ground leaves.
-    pub(crate) agile: f32,
+    /// Share of the agile variant in what the one for rough ground leaves: of gaits that move, and of those that stand.
+    pub(crate) agile: Urgency,
 }
 
 /// The blend with a share of each policy given to its variants, where it has them.
 pub(crate) fn with_variants(graph: &PolicyGraph, blend: Blend, shares: Shares) -> Blend {
-    if shares.rough_ground <= 0.0 && shares.agile <= 0.0 {
+    if shares.rough_ground <= 0.0 && shares.agile == Urgency::default() {
         return blend;
     }
     let mut shared = Blend::default();
@@ -29,7 +30,9 @@ pub(crate) fn with_variants(graph: &PolicyGraph, blend: Blend, shares: Shares) -
         };
         let rough = variant(|node| node.rough_ground, shares.rough_ground);
         let left = 1.0 - rough.map_or(0.0, |(_, share)| share);
-        let agile = variant(|node| node.agile, left * shares.agile);
+        let stands = node.is_some_and(|node| node.speed_mps == Some(0.0));
+        let urgency = if stands { shares.agile.to_stand } else { shares.agile.to_move };
+        let agile = variant(|node| node.agile, left * urgency);
         let own = left - agile.map_or(0.0, |(_, share)| share);
         let parts = [Some((term.policy, own)), rough, agile];
         for (policy, share) in parts.into_iter().flatten().filter(|(_, share)| *share > 0.0) {

@@ -104,6 +104,31 @@ fn a_stand_that_is_to_walk_and_a_heading_that_is_off_bring_it_in_too() {
 }
 
 #[test]
+fn to_brake_is_left_to_standing_and_its_variant_catches_a_push() {
+    let roll = policy("roll");
+    let mut walks = controller(true);
+    for _ in 0..4 {
+        assert_eq!(tick(&mut walks, &walking(2.0)), [(1, 1.0)], "faster than asked");
+    }
+    let mut manifest = common::manifest();
+    manifest.policies[0].speed_mps = Some(0.0);
+    manifest.policies[1].speed_mps = Some(1.0);
+    manifest.policies[0].agile = Some("roll".into());
+    let pack = Arc::new(CharacterPack::from_parts(manifest, common::tensors(0.0)).unwrap());
+    let mut stands = Controller::new(pack);
+    let mut rest = |speed: f32| {
+        stands.tick(&walking(speed), &Command::default(), DT);
+        let terms = stands.report().blend.terms();
+        terms.iter().filter(|term| term.policy.index() == roll).map(|term| term.weights[0]).sum::<f32>()
+    };
+    assert_eq!(rest(0.1), 0.0, "a stand that sways");
+    for _ in 0..4 {
+        rest(0.6);
+    }
+    assert_eq!(rest(0.6), 1.0);
+}
+
+#[test]
 fn without_agility_or_a_variant_nothing_changes() {
     let mut off = controller(false);
     let mut without = Controller::new(Arc::new(common::pack(0.0)));
