@@ -62,11 +62,13 @@ impl Urgency {
     }
 }
 
-/// Speed of a position on the graph, metres per second, where its gaits have one.
+/// Speed that a position on the graph asks for, metres per second, where its gaits have one: between two gaits that move, that of the slower
+/// one, which is all that its variant has learned.
 fn speed_mps(graph: &PolicyGraph, position: GraphPosition) -> Option<f32> {
     let speed = |node| graph.node(node).speed_mps;
     let (from, to) = (speed(position.from)?, speed(position.to)?);
-    Some(from + position.t * (to - from))
+    let slower = from.min(to);
+    Some(if slower > 0.0 { slower } else { from + position.t * (to - from) })
 }
 
 /// How far the velocity and the heading are from those that lead to a target at `speed`, in [0, 1].
