@@ -16,7 +16,7 @@ use simplify::simplified;
 /// Cells of the levels of detail, in units of the sizes in `anatomy`: close by, further off, and for a processor that draws.
 const COARSENESS: [f32; 3] = [1.4, 1.9, 2.8];
 /// Edge of the cells in which vertices of the last of these become one, for crowds, metres.
-const CROWD_CELL_M: f32 = 0.05;
+const CROWD_CELL_M: f32 = 0.08;
 
 /// Bytes of the mannequin as glTF 2.0 binary, about 1.5 MB. Takes about a second.
 #[must_use]
