@@ -9,6 +9,7 @@ use crate::graph::PolicyGraph;
 use crate::heading::Heading;
 use crate::path::GraphPosition;
 use crate::state::CharacterState;
+use crate::variants::{crossed, within};
 
 /// Velocity errors between which the variant comes in, relative to the speed of the gait.
 const OFF_VELOCITY: [f32; 2] = [0.3, 0.6];
@@ -19,8 +20,8 @@ const OFF_HEADING: [f32; 2] = [0.5, 1.0];
 /// Velocity errors are relative to at least this, metres per second: standing has no speed.
 const LEAST_SPEED: f32 = 0.5;
 
-/// Within this distance of the target a character slows down, metres.
-const BRAKING_METRES: f32 = 1.0;
+/// Within this distance of its target a character slows down, metres: in a game as in training.
+pub const BRAKING_METRES: f32 = 1.0;
 
 /// Time from a gait to its variant, and back, seconds.
 const CROSS_SECS: [f32; 2] = [0.1, 0.3];
@@ -53,11 +54,8 @@ impl Urgency {
             (Some(target), Some(speed)) => Self { to_move: off_course(state, target, speed), to_stand: 0.0 },
             (Some(_), None) => Self::default(),
         };
-        let [to_variant, to_gait] = CROSS_SECS;
-        let follow = |before: f32, now: f32| {
-            let now = if now.is_finite() { now } else { 0.0 };
-            now.clamp(before - dt / to_gait, before + dt / to_variant).clamp(0.0, 1.0)
-        };
+        let follow =
+            |before: f32, now: f32| crossed(before, if now.is_finite() { now } else { 0.0 }, CROSS_SECS, dt);
         Self { to_move: follow(self.to_move, now.to_move), to_stand: follow(self.to_stand, now.to_stand) }
     }
 }
@@ -85,17 +83,11 @@ fn off_course(state: &CharacterState, target: Vec2, speed: f32) -> f32 {
     let along = velocity.dot(direction);
     let missing = (near * speed - along).max(0.0);
     let error = velocity - (along + missing) * direction;
-    let local = Heading::from_rotation(root.rotation).heading_from_world_2d(direction);
-    let off_heading = near * libm::fabsf(libm::atan2f(local.y, local.x));
+    let off_heading = near * Heading::from_rotation(root.rotation).angle_off(direction);
     off_velocity(error, speed).max(within(off_heading, OFF_HEADING))
 }
 
 /// How far a velocity error counts at a speed, in [0, 1].
 fn off_velocity(error: Vec2, speed: f32) -> f32 {
     within(libm::sqrtf(error.length_squared()) / speed.max(LEAST_SPEED), OFF_VELOCITY)
-}
-
-/// Where a value lies between two, in [0, 1].
-fn within(value: f32, [begins, fully]: [f32; 2]) -> f32 {
-    ((value - begins) / (fully - begins)).clamp(0.0, 1.0)
 }

@@ -3,6 +3,7 @@
 //! On level ground the gait acts alone, with the bits that it has without a variant.
 
 use crate::state::CharacterState;
+use crate::variants::{crossed, within};
 
 /// Rises and drops up to the first of these count as level ground, from the second on as rough, metres.
 const ROUGH_RISES: [f32; 2] = [0.01, 0.03];
@@ -13,8 +14,5 @@ const CROSS_SECS: [f32; 2] = [0.1, 3.0];
 /// How uneven the ground is, in [0, 1], after a tick of `dt` seconds.
 pub(crate) fn next_unevenness(before: f32, state: &CharacterState, dt: f32) -> f32 {
     let steepest = state.ground_rises.iter().fold(0.0, |most: f32, rise| most.max(libm::fabsf(*rise)));
-    let [level, rough] = ROUGH_RISES;
-    let now = ((steepest - level) / (rough - level)).clamp(0.0, 1.0);
-    let [to_rough, to_level] = CROSS_SECS;
-    now.clamp(before - dt / to_level, before + dt / to_rough).clamp(0.0, 1.0)
+    crossed(before, within(steepest, ROUGH_RISES), CROSS_SECS, dt)
 }

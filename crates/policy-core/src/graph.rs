@@ -204,6 +204,12 @@ impl PolicyGraph {
         &self.nodes[id.index()]
     }
 
+    /// Nodes that are no variant of another one, with their ids.
+    pub fn originals(&self) -> impl Iterator<Item = (NodeId, &Node)> {
+        let all = self.nodes.iter().enumerate().map(|(index, node)| (NodeId::new(index), node));
+        all.filter(|(id, _)| !self.is_variant(*id))
+    }
+
     /// True for a node that is a variant of another one: for rough ground, or an agile one.
     #[must_use]
     pub fn is_variant(&self, id: NodeId) -> bool {

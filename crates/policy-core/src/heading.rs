@@ -56,6 +56,12 @@ impl Heading {
         Vec3::new(self.cos * v.x + self.sin * v.y, self.cos * v.y - self.sin * v.x, v.z)
     }
 
+    /// Angle between this heading and a horizontal world direction of any length, in [0, pi].
+    pub(crate) fn angle_off(self, direction: Vec2) -> f32 {
+        let local = self.heading_from_world_2d(direction);
+        libm::fabsf(libm::atan2f(local.y, local.x))
+    }
+
     /// A horizontal world vector expressed in the heading frame.
     #[must_use]
     #[inline]

@@ -2,6 +2,7 @@
 //! follows a game.
 
 pub use crate::action::{ActionScaling, ActionScalingError};
+pub use crate::agility::BRAKING_METRES;
 pub use crate::blend::{BlendFull, BlendTerm, MAX_BLEND_TERMS};
 pub use crate::evaluator::Evaluation;
 pub use crate::fall::{FallDetector, Heights, LATE_RISE_SECONDS, RISE_SECONDS, fall_height, step_heights};

@@ -70,8 +70,7 @@ fn weight(state: &CharacterState, to_target: Vec2, [begin, full]: [f32; 2]) -> f
     if to_target.length_squared() < 1e-6 {
         return 0.0;
     }
-    let local = Heading::from_rotation(state.root().rotation).heading_from_world_2d(to_target);
-    let angle = libm::fabsf(libm::atan2f(local.y, local.x));
+    let angle = Heading::from_rotation(state.root().rotation).angle_off(to_target);
     let weight = (angle - begin) / (full - begin);
     if weight.is_finite() { weight.clamp(0.0, 1.0) } else { 0.0 }
 }

@@ -8,6 +8,16 @@ use crate::blend::{Blend, BlendTerm};
 use crate::graph::PolicyGraph;
 use crate::ids::{NodeId, PolicyId};
 
+/// Where a value lies between two, in [0, 1].
+pub(crate) fn within(value: f32, [begins, fully]: [f32; 2]) -> f32 {
+    ((value - begins) / (fully - begins)).clamp(0.0, 1.0)
+}
+
+/// A share that follows `now` from `before`, in `secs` from nothing to all and back, after a tick of `dt` seconds.
+pub(crate) fn crossed(before: f32, now: f32, [to_all, to_nothing]: [f32; 2], dt: f32) -> f32 {
+    now.clamp(before - dt / to_nothing, before + dt / to_all).clamp(0.0, 1.0)
+}
+
 /// How far the variants of a policy act, each in [0, 1].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Shares {

@@ -4,11 +4,10 @@ mod common;
 
 use std::sync::Arc;
 
-use common::standing;
+use common::{acted, hand_over, policy, standing, weight};
 use glam::{Quat, Vec2, Vec3};
 use policy_core::{
-    BodyId, CharacterPack, CharacterState, Command, Controller, ControllerConfig, ControllerState, Goal,
-    PathId, Skeleton,
+    BodyId, CharacterPack, CharacterState, Command, Controller, ControllerConfig, Goal, PathId, Skeleton,
 };
 
 const DT: f32 = 1.0 / 30.0;
@@ -55,15 +54,7 @@ fn tick(controller: &mut Controller, state: &CharacterState) -> Vec<(usize, f32)
 fn tick_towards(controller: &mut Controller, state: &CharacterState, direction: Vec2) -> Vec<(usize, f32)> {
     let target = state.root().position.truncate() + 10.0 * direction;
     controller.tick(state, &towards(target), DT);
-    controller.report().blend.terms().iter().map(|term| (term.policy.index(), term.weights[0])).collect()
-}
-
-fn policy(name: &str) -> usize {
-    common::manifest().policies.iter().position(|policy| policy.name == name).unwrap()
-}
-
-fn weight(terms: &[(usize, f32)], policy: usize) -> f32 {
-    terms.iter().filter(|term| term.0 == policy).map(|term| term.1).sum()
+    acted(controller)
 }
 
 #[test]
@@ -118,8 +109,7 @@ fn to_brake_is_left_to_standing_and_its_variant_catches_a_push() {
     let mut stands = Controller::new(pack);
     let mut rest = |speed: f32| {
         stands.tick(&walking(speed), &Command::default(), DT);
-        let terms = stands.report().blend.terms();
-        terms.iter().filter(|term| term.policy.index() == roll).map(|term| term.weights[0]).sum::<f32>()
+        weight(&acted(&stands), roll)
     };
     assert_eq!(rest(0.1), 0.0, "a stand that sways");
     for _ in 0..4 {
@@ -165,14 +155,8 @@ fn rough_ground_comes_before_agility_and_shares_add_up_to_one() {
 fn a_state_saved_in_a_turn_goes_on_with_the_same_blend() {
     let mut run = controller(true);
     tick_towards(&mut run, &walking(1.0), -Vec2::X);
-    let mut state = ControllerState::new(run.pack());
-    run.save_into(&mut state);
-    let mut bytes = vec![0; state.byte_len()];
-    state.write_bytes(&mut bytes);
     let mut other = controller(true);
-    let pack = Arc::clone(other.pack());
-    state.read_bytes(&pack, &bytes).unwrap();
-    other.restore(&state).unwrap();
+    hand_over(&run, &mut other);
     assert!(run.report().blend.terms().len() > 1, "half-way");
     for _ in 0..20 {
         assert_eq!(tick(&mut other, &walking(1.0)), tick(&mut run, &walking(1.0)));

@@ -4,10 +4,9 @@ mod common;
 
 use std::sync::Arc;
 
-use common::{p, standing};
+use common::{acted, hand_over, p, policy, standing, weight};
 use policy_core::{
-    CharacterPack, CharacterState, Command, Controller, ControllerConfig, ControllerState, Goal, PathId,
-    Skeleton,
+    CharacterPack, CharacterState, Command, Controller, ControllerConfig, Goal, PathId, Skeleton,
 };
 
 const DT: f32 = 1.0 / 30.0;
@@ -32,7 +31,7 @@ fn controller(footing: bool) -> Controller {
 fn tick(controller: &mut Controller, state: &CharacterState) -> Vec<(usize, f32)> {
     let goal = Goal::Path { path: PathId::new(0), coordinate: 1.0 };
     controller.tick(state, &Command { goal, ..Command::default() }, DT);
-    controller.report().blend.terms().iter().map(|term| (term.policy.index(), term.weights[0])).collect()
+    acted(controller)
 }
 
 fn before_a_step() -> CharacterState {
@@ -43,7 +42,7 @@ fn before_a_step() -> CharacterState {
 }
 
 fn roll() -> usize {
-    common::manifest().policies.iter().position(|policy| policy.name == "roll").unwrap()
+    policy("roll")
 }
 
 #[test]
@@ -65,10 +64,6 @@ fn a_gait_acts_alone_on_level_ground_and_as_its_variant_on_rough_ground() {
     assert_eq!(tick(&mut controller, &standing()), [(1, 1.0)]);
 }
 
-fn weight(terms: &[(usize, f32)], policy: usize) -> f32 {
-    terms.iter().filter(|term| term.0 == policy).map(|term| term.1).sum()
-}
-
 #[test]
 fn without_footing_or_without_a_variant_nothing_changes() {
     let mut off = controller(false);
@@ -86,14 +81,8 @@ fn without_footing_or_without_a_variant_nothing_changes() {
 fn a_state_saved_half_way_goes_on_with_the_same_blend() {
     let mut run = controller(true);
     tick(&mut run, &before_a_step());
-    let mut state = ControllerState::new(run.pack());
-    run.save_into(&mut state);
-    let mut bytes = vec![0; state.byte_len()];
-    state.write_bytes(&mut bytes);
     let mut other = controller(true);
-    let pack = Arc::clone(other.pack());
-    state.read_bytes(&pack, &bytes).unwrap();
-    other.restore(&state).unwrap();
+    hand_over(&run, &mut other);
     for _ in 0..20 {
         assert_eq!(tick(&mut other, &standing()), tick(&mut run, &standing()));
     }

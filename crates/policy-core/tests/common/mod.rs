@@ -6,7 +6,9 @@ use policy_core::format::{
     PACK_VERSION, PathEntry, PolicyEntry, SkeletonEntry, SkillEntry, Storage,
 };
 use policy_core::training::{Layer, Normaliser, PackTensors};
-use policy_core::{CharacterPack, CharacterState, Mlp, NodeId, PolicyId, Skeleton};
+use policy_core::{
+    CharacterPack, CharacterState, Controller, ControllerState, Mlp, NodeId, PolicyId, Skeleton,
+};
 
 /// Numbers of the humanoid's layouts.
 pub const INPUT: usize = 225;
@@ -30,6 +32,31 @@ pub fn standing() -> CharacterState {
     state.bodies.iter_mut().for_each(|b| b.position.z = 0.9);
     state.body_mut(skeleton.head().unwrap()).position.z = 1.4;
     state
+}
+
+/// Index of the made-up pack's policy of this name.
+pub fn policy(name: &str) -> usize {
+    manifest().policies.iter().position(|policy| policy.name == name).unwrap()
+}
+
+/// Policies that acted in the last tick and their weights in the first layer.
+pub fn acted(controller: &Controller) -> Vec<(usize, f32)> {
+    controller.report().blend.terms().iter().map(|term| (term.policy.index(), term.weights[0])).collect()
+}
+
+/// Weight of a policy among those.
+pub fn weight(acted: &[(usize, f32)], policy: usize) -> f32 {
+    acted.iter().filter(|term| term.0 == policy).map(|term| term.1).sum()
+}
+
+/// Lets `to` go on where `from` is, through bytes.
+pub fn hand_over(from: &Controller, to: &mut Controller) {
+    let mut state = ControllerState::new(from.pack());
+    from.save_into(&mut state);
+    let mut bytes = vec![0; state.byte_len()];
+    state.write_bytes(&mut bytes);
+    state.read_bytes(to.pack(), &bytes).unwrap();
+    to.restore(&state).unwrap();
 }
 
 pub const POLICY_SIZES: [usize; 4] = [INPUT, 128, 32, JOINTS];

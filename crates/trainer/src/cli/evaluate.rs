@@ -12,7 +12,7 @@ use evaluation::{Effort, PlayerReport, Progress, Section, clip_states, evaluate,
 use files::write_atomically;
 use physics::Engine;
 use physics_bridge::Model;
-use policy_core::{CharacterPack, CharacterState, ControllerConfig, GiveWay, NodeId, Steering, TurnAssist};
+use policy_core::{CharacterPack, CharacterState, ControllerConfig, GiveWay, Steering, TurnAssist};
 use trainer::recipe::Recipe;
 
 use super::output::say;
@@ -149,9 +149,7 @@ fn states_of_clips(
     pack: &CharacterPack,
 ) -> Result<BTreeMap<String, Vec<CharacterState>>> {
     let mut states = BTreeMap::new();
-    let graph = pack.graph();
-    let gaits = graph.nodes().iter().enumerate().filter(|(index, _)| !graph.is_variant(NodeId::new(*index)));
-    for (_, node) in gaits {
+    for (_, node) in pack.graph().originals() {
         let path = recipes.join(format!("{}.toml", node.name));
         if !path.is_file() {
             continue;

@@ -2,6 +2,7 @@
 
 use glam::{Vec2, Vec3};
 use physics_bridge::Contact;
+use policy_core::training::BRAKING_METRES;
 use policy_core::{BodyId, CharacterState, Heading, Skeleton};
 use serde::{Deserialize, Serialize};
 
@@ -129,9 +130,6 @@ pub fn foot_slip_mps(
         .sum();
     (sum / weight_newton).min(1.0)
 }
-
-/// Within this distance of the target the commanded speed falls to zero, metres.
-const BRAKING_METRES: f32 = 1.0;
 
 /// Speed that a target should be approached with, at a position on the graph.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -12,9 +12,8 @@ const NODE: f32 = 9.0;
 pub(super) fn show(ui: &mut Ui, app: &App, commands: &mut Vec<ViewerCommand>) {
     let graph = app.sim.pack().graph();
     let (rect, response) = ui.allocate_exact_size(vec2(ui.available_width(), HEIGHT), Sense::click());
-    // Variants for rough ground are rings around their gaits.
-    let shown: Vec<NodeId> =
-        (0..graph.nodes().len()).map(NodeId::new).filter(|node| !graph.is_variant(*node)).collect();
+    // Variants are rings around their gaits.
+    let shown: Vec<NodeId> = graph.originals().map(|(id, _)| id).collect();
     let place = |node: NodeId| {
         let at = shown.iter().position(|n| *n == node).unwrap_or(0);
         on_circle(rect, at, shown.len())
@@ -73,12 +72,10 @@ fn walk_to(ui: &mut Ui, app: &App, commands: &mut Vec<ViewerCommand>) {
     let graph = app.sim.pack().graph();
     ui.horizontal_wrapped(|ui| {
         ui.label("Go to");
-        let gaits =
-            graph.nodes().iter().enumerate().filter(|(index, _)| !graph.is_variant(NodeId::new(*index)));
-        for (index, node) in gaits {
+        for (id, node) in graph.originals() {
             let told = format!("Blend over to {}, whatever the triggers say", node.name);
             if ui.small_button(&node.name).on_hover_text(told).clicked() {
-                commands.push(ViewerCommand::Goal(Some(Goal::Node(NodeId::new(index)))));
+                commands.push(ViewerCommand::Goal(Some(Goal::Node(id))));
             }
         }
     });
