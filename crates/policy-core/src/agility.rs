@@ -38,7 +38,8 @@ pub(crate) struct Urgency {
 impl Urgency {
     /// What it is after a tick of `dt` seconds at a position on the graph.
     ///
-    /// A speed beyond the one asked for is no error: the way back to a slower gait brakes. Gaits without a speed ask for nothing.
+    /// A speed beyond the one asked for is no error: the way back to a slower gait brakes. Gaits without a speed ask for nothing, and on
+    /// an edge that is only crossed the body goes down or up before it goes anywhere.
     pub(crate) fn next(
         self,
         (graph, position): (&PolicyGraph, GraphPosition),
@@ -47,7 +48,9 @@ impl Urgency {
         dt: f32,
     ) -> Self {
         let speed = speed_mps(graph, position).filter(|speed| *speed > 0.0);
+        let crosses = graph.edge_at(position).is_some_and(|edge| edge.transit);
         let now = match (target, speed) {
+            _ if crosses => Self::default(),
             (None, _) => {
                 Self { to_stand: off_velocity(state.root().linear_velocity.truncate(), 0.0), to_move: 0.0 }
             }

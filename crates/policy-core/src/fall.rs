@@ -90,8 +90,7 @@ pub(crate) fn lies(graph: &PolicyGraph, limit: Option<f32>, state: &CharacterSta
 /// does so before it sets out.
 #[must_use]
 pub fn step_heights(graph: &PolicyGraph, [before, next]: [GraphPosition; 2]) -> [Option<f32>; 2] {
-    let crossed =
-        next.as_node().is_none() && graph.edge_between(next.from, next.to).is_some_and(|edge| edge.transit);
+    let crossed = graph.edge_at(next).is_some_and(|edge| edge.transit);
     let leads_to = match before.along(next.from, next.to) {
         Some(t) if crossed && next.t < t => GraphPosition::node(next.from),
         Some(t) if crossed && next.t > t => GraphPosition::node(next.to),

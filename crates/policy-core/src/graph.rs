@@ -268,6 +268,11 @@ impl PolicyGraph {
     pub fn edge_between(&self, a: NodeId, b: NodeId) -> Option<&Edge> {
         self.edges.iter().find(|e| e.nodes == [a, b] || e.nodes == [b, a])
     }
+
+    /// The edge that a position lies on; none at a node.
+    pub(crate) fn edge_at(&self, position: GraphPosition) -> Option<&Edge> {
+        position.as_node().map_or_else(|| self.edge_between(position.from, position.to), |_| None)
+    }
 }
 
 pub(crate) fn check_names<'a>(

@@ -122,11 +122,7 @@ impl PolicyGraph {
     /// other, so that a trembling trigger does not send it to and fro.
     #[must_use]
     pub fn settled(&self, goal: GraphPosition, present: GraphPosition) -> GraphPosition {
-        let edge = match goal.as_node() {
-            None => self.edge_between(goal.from, goal.to),
-            Some(_) => None,
-        };
-        if !edge.is_some_and(|edge| edge.transit) {
+        if !self.edge_at(goal).is_some_and(|edge| edge.transit) {
             return goal;
         }
         let threshold = match present.along(goal.from, goal.to) {

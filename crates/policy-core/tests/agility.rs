@@ -6,6 +6,7 @@ use std::sync::Arc;
 
 use common::{acted, hand_over, policy, standing, weight};
 use glam::{Quat, Vec2, Vec3};
+use policy_core::format::Manifest;
 use policy_core::{
     BodyId, CharacterPack, CharacterState, Command, Controller, ControllerConfig, Goal, PathId, Skeleton,
 };
@@ -15,11 +16,16 @@ const DT: f32 = 1.0 / 30.0;
 /// The made-up pack. Its walk goes at 1 m/s and has the roll's policy as its agile variant, and on request the standing one as its
 /// variant for rough ground.
 fn pack(rough: bool) -> Arc<CharacterPack> {
+    changed_pack(rough, |_| {})
+}
+
+fn changed_pack(rough: bool, change: impl FnOnce(&mut Manifest)) -> Arc<CharacterPack> {
     let mut manifest = common::manifest();
     manifest.policies[0].speed_mps = Some(0.0);
     manifest.policies[1].speed_mps = Some(1.0);
     manifest.policies[1].agile = Some("roll".into());
     manifest.policies[1].rough_ground = rough.then(|| "idle".into());
+    change(&mut manifest);
     Arc::new(CharacterPack::from_parts(manifest, common::tensors(0.0)).unwrap())
 }
 
@@ -101,12 +107,8 @@ fn to_brake_is_left_to_standing_and_its_variant_catches_a_push() {
     for _ in 0..4 {
         assert_eq!(tick(&mut walks, &walking(2.0)), [(1, 1.0)], "faster than asked");
     }
-    let mut manifest = common::manifest();
-    manifest.policies[0].speed_mps = Some(0.0);
-    manifest.policies[1].speed_mps = Some(1.0);
-    manifest.policies[0].agile = Some("roll".into());
-    let pack = Arc::new(CharacterPack::from_parts(manifest, common::tensors(0.0)).unwrap());
-    let mut stands = Controller::new(pack);
+    let mut stands =
+        Controller::new(changed_pack(false, |manifest| manifest.policies[0].agile = Some("roll".into())));
     let mut rest = |speed: f32| {
         stands.tick(&walking(speed), &Command::default(), DT);
         weight(&acted(&stands), roll)
@@ -116,6 +118,31 @@ fn to_brake_is_left_to_standing_and_its_variant_catches_a_push() {
         rest(0.6);
     }
     assert_eq!(rest(0.6), 1.0);
+}
+
+#[test]
+fn on_an_edge_that_is_only_crossed_gaits_act_alone() {
+    let agile_share_half_way = |transit: bool| {
+        let pack = changed_pack(false, |manifest| manifest.edges[0].transit = transit);
+        let config = ControllerConfig {
+            steering: None,
+            give_way: None,
+            turn_assist: None,
+            ..ControllerConfig::default()
+        };
+        let mut controller = Controller::with_config(pack, config);
+        let mut shares = Vec::new();
+        for _ in 0..90 {
+            let acted = tick_towards(&mut controller, &standing(), Vec2::NEG_X);
+            if controller.report().position.as_node().is_none() {
+                shares.push(weight(&acted, policy("roll")));
+            }
+        }
+        assert!(!shares.is_empty());
+        shares.into_iter().fold(0.0, f32::max)
+    };
+    assert!(agile_share_half_way(false) > 0.1);
+    assert_eq!(agile_share_half_way(true), 0.0);
 }
 
 #[test]
