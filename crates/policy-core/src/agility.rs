@@ -29,20 +29,20 @@ const CROSS_SECS: [f32; 2] = [0.1, 0.3];
 /// How far a character is from what it is asked to do, each in [0, 1].
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct Urgency {
-    /// From going where it is asked to go: for the variants of gaits that move.
+    /// From going where it is asked to go, or from rest in a gait that it is to stay in: for the variants of gaits that move.
     pub(crate) to_move: f32,
     /// From standing, while it has no target: for the variants of gaits that stand.
     pub(crate) to_stand: f32,
 }
 
 impl Urgency {
-    /// What it is after a tick of `dt` seconds at a position on the graph.
+    /// What it is after a tick of `dt` seconds at a position on the graph, on the way to another.
     ///
     /// A speed beyond the one asked for is no error: the way back to a slower gait brakes. Gaits without a speed ask for nothing, and on
     /// an edge that is only crossed the body goes down or up before it goes anywhere.
     pub(crate) fn next(
         self,
-        (graph, position): (&PolicyGraph, GraphPosition),
+        (graph, position, goal): (&PolicyGraph, GraphPosition, GraphPosition),
         state: &CharacterState,
         target: Option<Vec2>,
         dt: f32,
@@ -52,7 +52,9 @@ impl Urgency {
         let now = match (target, speed) {
             _ if crosses => Self::default(),
             (None, _) => {
-                Self { to_stand: off_velocity(state.root().linear_velocity.truncate(), 0.0), to_move: 0.0 }
+                let moves = off_velocity(state.root().linear_velocity.truncate(), 0.0);
+                let stays = speed_mps(graph, goal).is_some_and(|speed| speed > 0.0);
+                Self { to_stand: moves, to_move: if stays { moves } else { 0.0 } }
             }
             (Some(target), Some(speed)) => Self { to_move: off_course(state, target, speed), to_stand: 0.0 },
             (Some(_), None) => Self::default(),
@@ -67,6 +69,9 @@ impl Urgency {
 /// one, which is all that its variant has learned.
 fn speed_mps(graph: &PolicyGraph, position: GraphPosition) -> Option<f32> {
     let speed = |node| graph.node(node).speed_mps;
+    if let Some(node) = position.as_node() {
+        return speed(node);
+    }
     let (from, to) = (speed(position.from)?, speed(position.to)?);
     let slower = from.min(to);
     Some(if slower > 0.0 { slower } else { from + position.t * (to - from) })

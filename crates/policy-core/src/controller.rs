@@ -236,7 +236,7 @@ impl Controller {
         self.travel(&command, heights, dt);
         self.state.urgency = match self.config.agility {
             true => {
-                let place = (self.pack.graph(), self.state.report.position);
+                let place = (self.pack.graph(), self.state.report.position, self.state.report.goal);
                 self.state.urgency.next(place, state, command.target, dt)
             }
             false => Urgency::default(),

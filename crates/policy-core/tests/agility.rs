@@ -121,6 +121,21 @@ fn to_brake_is_left_to_standing_and_its_variant_catches_a_push() {
 }
 
 #[test]
+fn a_gait_that_it_is_to_stay_in_comes_to_rest_by_its_variant() {
+    let roll = policy("roll");
+    let share = |coordinate: f32| {
+        let mut controller = controller(true);
+        let goal = Goal::Path { path: PathId::new(0), coordinate };
+        for _ in 0..4 {
+            controller.tick(&walking(0.6), &Command { goal, ..Command::default() }, DT);
+        }
+        weight(&acted(&controller), roll)
+    };
+    assert_eq!(share(1.0), 1.0);
+    assert_eq!(share(0.0), 0.0, "on the way to standing the stand brakes");
+}
+
+#[test]
 fn on_an_edge_that_is_only_crossed_gaits_act_alone() {
     let agile_share_half_way = |transit: bool| {
         let pack = changed_pack(false, |manifest| manifest.edges[0].transit = transit);
