@@ -5,6 +5,7 @@
 
 use glam::Vec2;
 
+use crate::fall::fall_height;
 use crate::graph::PolicyGraph;
 use crate::heading::Heading;
 use crate::path::GraphPosition;
@@ -39,7 +40,7 @@ impl Urgency {
     /// What it is after a tick of `dt` seconds at a position on the graph, on the way to another.
     ///
     /// A speed beyond the one asked for is no error: the way back to a slower gait brakes. Gaits without a speed ask for nothing, and on
-    /// an edge that is only crossed the body goes down or up before it goes anywhere.
+    /// the way up an edge that is only crossed the body stands up before it goes anywhere.
     pub(crate) fn next(
         self,
         (graph, position, goal): (&PolicyGraph, GraphPosition, GraphPosition),
@@ -48,7 +49,8 @@ impl Urgency {
         dt: f32,
     ) -> Self {
         let speed = speed_mps(graph, position).filter(|speed| *speed > 0.0);
-        let crosses = graph.edge_at(position).is_some_and(|edge| edge.transit);
+        let crosses = graph.edge_at(position).is_some_and(|edge| edge.transit)
+            && fall_height(graph, goal) > fall_height(graph, position);
         let now = match (target, speed) {
             _ if crosses => Self::default(),
             (None, _) => {

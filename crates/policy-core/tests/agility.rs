@@ -136,9 +136,12 @@ fn a_gait_that_it_is_to_stay_in_comes_to_rest_by_its_variant() {
 }
 
 #[test]
-fn on_an_edge_that_is_only_crossed_gaits_act_alone() {
+fn on_the_way_up_an_edge_that_is_only_crossed_gaits_act_alone() {
     let agile_share_half_way = |transit: bool| {
-        let pack = changed_pack(false, |manifest| manifest.edges[0].transit = transit);
+        let pack = changed_pack(false, |manifest| {
+            manifest.edges[0].transit = transit;
+            manifest.policies[0].fall_height = Some(0.2);
+        });
         let config = ControllerConfig {
             steering: None,
             give_way: None,
