@@ -48,14 +48,13 @@ impl Urgency {
         target: Option<Vec2>,
         dt: f32,
     ) -> Self {
-        let speed = speed_mps(graph, position).filter(|speed| *speed > 0.0);
         let crosses = graph.edge_at(position).is_some_and(|edge| edge.transit)
             && fall_height(graph, goal) > fall_height(graph, position);
-        let now = match (target, speed) {
+        let now = match (target, moving_mps(graph, position)) {
             _ if crosses => Self::default(),
             (None, _) => {
                 let moves = off_velocity(state.root().linear_velocity.truncate(), 0.0);
-                let stays = speed_mps(graph, goal).is_some_and(|speed| speed > 0.0);
+                let stays = moving_mps(graph, goal).is_some();
                 Self { to_stand: moves, to_move: if stays { moves } else { 0.0 } }
             }
             (Some(target), Some(speed)) => Self { to_move: off_course(state, target, speed), to_stand: 0.0 },
@@ -67,16 +66,19 @@ impl Urgency {
     }
 }
 
-/// Speed that a position on the graph asks for, metres per second, where its gaits have one: between two gaits that move, that of the slower
-/// one, which is all that its variant has learned.
-fn speed_mps(graph: &PolicyGraph, position: GraphPosition) -> Option<f32> {
+/// Speed that a position on the graph asks for, metres per second, where its gaits have one and it does not stand: between two gaits that move,
+/// that of the slower one, which is all that its variant has learned.
+fn moving_mps(graph: &PolicyGraph, position: GraphPosition) -> Option<f32> {
     let speed = |node| graph.node(node).speed_mps;
-    if let Some(node) = position.as_node() {
-        return speed(node);
-    }
-    let (from, to) = (speed(position.from)?, speed(position.to)?);
-    let slower = from.min(to);
-    Some(if slower > 0.0 { slower } else { from + position.t * (to - from) })
+    let asked = match position.as_node() {
+        Some(node) => speed(node)?,
+        None => {
+            let (from, to) = (speed(position.from)?, speed(position.to)?);
+            let slower = from.min(to);
+            if slower > 0.0 { slower } else { from + position.t * (to - from) }
+        }
+    };
+    (asked > 0.0).then_some(asked)
 }
 
 /// How far the velocity and the heading are from those that lead to a target at `speed`, in [0, 1].

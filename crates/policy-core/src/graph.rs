@@ -271,7 +271,10 @@ impl PolicyGraph {
 
     /// The edge that a position lies on; none at a node.
     pub(crate) fn edge_at(&self, position: GraphPosition) -> Option<&Edge> {
-        position.as_node().map_or_else(|| self.edge_between(position.from, position.to), |_| None)
+        match position.as_node() {
+            Some(_) => None,
+            None => self.edge_between(position.from, position.to),
+        }
     }
 }
 
