@@ -117,6 +117,7 @@ fn flat(players: usize, crates: usize, seed: u32) -> Playground {
         fixtures: Vec::new(),
         props: (0..crates).map(placed).collect(),
         checkpoints: Vec::new(),
+        way: Vec::new(),
     }
 }
 

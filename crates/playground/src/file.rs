@@ -6,7 +6,7 @@ use ron::extensions::Extensions;
 use serde::Deserialize;
 
 use super::layout::Blocks;
-use super::{Checkpoint, Paint, PaintedFixture, PlacedProp, Playground, Start};
+use super::{Checkpoint, Pace, Paint, PaintedFixture, PlacedProp, Playground, Start, Waypoint};
 
 /// Largest text of a scene, bytes.
 const MOST_BYTES: usize = 1 << 20;
@@ -60,6 +60,12 @@ pub enum SceneFileError {
         /// The name.
         name: String,
     },
+    /// A prop of the way that is not there, or does not swing.
+    #[error("expected the name of a prop that swings, for the way to lead past it, found {name:?}")]
+    Swing {
+        /// The name.
+        name: String,
+    },
     /// A place outside the area of the scene.
     #[error("expected {what} within the area, found one at {at}")]
     Outside {
@@ -83,6 +89,8 @@ struct SceneFile {
     fixtures: Vec<FixtureEntry>,
     props: Vec<PropEntry>,
     checkpoints: Vec<CheckpointEntry>,
+    #[serde(default)]
+    way: Vec<WaypointEntry>,
 }
 
 #[derive(Deserialize)]
@@ -100,6 +108,17 @@ struct StartEntry {
 struct CheckpointEntry {
     at: Pair,
     radius: f32,
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct WaypointEntry {
+    at: Pair,
+    near: f32,
+    #[serde(default)]
+    pace: Pace,
+    #[serde(default)]
+    past: Option<String>,
 }
 
 #[derive(Deserialize)]
@@ -210,7 +229,14 @@ impl Playground {
             }
             props.push(prop);
         }
-        Ok(Self { name: file.name, area, starts, fixtures: blocks.0, props, checkpoints })
+        count("points of the way", [0, MOST_THINGS], file.way.len())?;
+        let mut way = Vec::new();
+        for WaypointEntry { at, near, pace, past } in file.way {
+            let past = past.map(|name| swinging(&props, name)).transpose()?;
+            let near_m = range("the reach of a point of the way", [0.1, 10.0], near)?;
+            way.push(Waypoint { at: within("a point of the way", at)?, near_m, pace, past });
+        }
+        Ok(Self { name: file.name, area, starts, fixtures: blocks.0, props, checkpoints, way })
     }
 }
 
@@ -297,6 +323,12 @@ impl JointEntry {
     }
 }
 
+/// The index of the prop of that name that swings.
+fn swinging(props: &[PlacedProp], name: String) -> Result<usize, SceneFileError> {
+    let swings = |prop: &PlacedProp| prop.name == name && prop.swing_m.is_some();
+    props.iter().position(swings).ok_or(SceneFileError::Swing { name })
+}
+
 fn count(what: &'static str, [least, most]: [usize; 2], found: usize) -> Result<(), SceneFileError> {
     if (least..=most).contains(&found) {
         Ok(())
@@ -367,6 +399,10 @@ mod tests {
         assert!(said(scene(TWO, &one.replace("mass: 1", "mass: -1"))).contains("a mass"));
         assert!(said(scene(TWO, &one.replace("Ball(0.1)", "Ball(NaN)"))).contains("a size"));
         assert!(said(scene(TWO, &one.replace("paint", "taste"))).contains("taste"));
+        let past = format!("{TWO}], way: [(at: (1, 0), near: 0.5, past: \"b\")");
+        assert!(said(scene(&past, one)).contains("swings, for the way to lead past it, found \"b\""));
+        let far = format!("{TWO}], way: [(at: (9, 0), near: 0.5)");
+        assert!(said(scene(&far, one)).contains("a point of the way within the area"));
         assert!(said(Playground::from_ron(&" ".repeat(MOST_BYTES + 1))).contains("bytes"));
     }
 

@@ -80,6 +80,7 @@ mod tests {
             fixtures: blocks.0,
             props: Vec::new(),
             checkpoints: Vec::new(),
+            way: Vec::new(),
         }
     }
 

@@ -2,7 +2,7 @@
 //! pure functions of it; knows no physics engine, no drawing and no devices.
 //!
 //! A physics engine builds [`Playground::fixtures`] and [`Playground::props`]; a [`Race`] and one [`Wanderer`] for each
-//! further character go along with its ticks. Equal inputs give the same bits on every machine.
+//! further character go along with its ticks; a [`Follower`] steers over the course by itself. Equal inputs give the same bits on every machine.
 //!
 //! ```
 //! # fn main() -> Result<(), playground::SceneFileError> {
@@ -19,6 +19,7 @@
 //! ```
 
 mod file;
+mod follow;
 mod layout;
 mod loose;
 mod race;
@@ -31,6 +32,7 @@ use glam::{Quat, Vec2, Vec3};
 use policy_core::contract::{Fixture, Joint, Motion, Prop};
 
 pub use file::SceneFileError;
+pub use follow::{Follower, Pace, Waypoint};
 pub use loose::{LooseKind, put_down, thrown};
 pub use race::{Race, RaceEvent, RaceState};
 pub use wander::{WanderPath, Wanderer, Wish};
@@ -125,6 +127,8 @@ pub struct Playground {
     pub props: Vec<PlacedProp>,
     /// The course: the first starts the clock, the last stops it.
     pub checkpoints: Vec<Checkpoint>,
+    /// A way past all checkpoints, for a [`Follower`]; empty when the scene has none.
+    pub way: Vec<Waypoint>,
 }
 
 impl Playground {

@@ -17,7 +17,7 @@ const AHEAD_M: f32 = 5.0;
 /// In a hurry it is so far along the path behind its second node.
 const HURRY: f32 = 0.25;
 /// Fastest that it turns its direction, radians per second.
-const TURN_RADPS: f32 = 1.6;
+const TURN_RADPS: f32 = 3.0;
 
 /// What a wanderer wants in a tick.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -310,6 +310,35 @@ fn a_finished_race_keeps_its_best_time_beside_the_settings() {
 }
 
 #[test]
+fn the_tour_follows_the_way_from_the_start_and_runs_for_no_best_time() {
+    let mut app = App::new(playground(1), PanelLayout::default());
+    let checkpoints = shared(&app.sim).scene().checkpoints.clone();
+    assert!(app.sim.carry(0, Vec2::new(-4.0, -4.0)));
+    app.tour.start();
+    app.tick();
+    assert!(app.sim.player().position().length() < 0.5, "{}", app.sim.player().position());
+    // The first point of the way is straight ahead, wherever the camera looks from.
+    app.camera.turn(Vec2::new(1.0, 0.0));
+    for _ in 0..90 {
+        app.tick();
+    }
+    assert_eq!(shared(&app.sim).race().state(), RaceState::Running);
+    for checkpoint in &checkpoints {
+        assert!(app.sim.carry(0, checkpoint.at));
+        app.tick();
+    }
+    assert_eq!(shared(&app.sim).race().state(), RaceState::Finished);
+    assert_eq!(app.best.time(), None);
+    // It can't come back to the point that it was on the way to, so it begins anew.
+    let stuck = (0..1200).find(|_| {
+        app.sim.carry(0, Vec2::new(21.0, -10.0));
+        app.tick();
+        app.sim.player().position().length() < 0.5
+    });
+    assert!(stuck.is_some());
+}
+
+#[test]
 fn the_camera_stays_before_walls_and_other_characters() {
     let mut app = App::new(playground(2), PanelLayout::default());
     let distance_at = |app: &mut App, at: Vec2| {

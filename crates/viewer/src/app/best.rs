@@ -46,7 +46,8 @@ fn bells(events: &[RaceEvent], is_best: bool) -> Option<&'static [f32]> {
 }
 
 impl App {
-    /// Takes what happened in a shared world during a tick: a new best time is kept at once, and what diverged is told.
+    /// Takes what happened in a shared world during a tick: a new best time is kept at once, and what diverged is told. The tour runs for no
+    /// best time.
     pub(super) fn follow_race(&mut self) {
         let tick_secs = self.sim.tick_secs();
         let Some(shared) = self.sim.shared_mut() else { return };
@@ -66,7 +67,8 @@ impl App {
                 Err(error) => self.toasts.error(error.to_string()),
             }
         }
-        let is_best = events.contains(&RaceEvent::Finished) && run.beats(self.best.time);
+        let is_best =
+            !self.tour.is_playing() && events.contains(&RaceEvent::Finished) && run.beats(self.best.time);
         if let Some(pitches) = bells(&events, is_best) {
             self.ear.add(Sound::bells(pitches, BELLS_APART_SECS));
         }

@@ -51,13 +51,13 @@ impl App {
     /// One tick of the world. Characters whose physics diverged are in their state before it.
     pub fn tick(&mut self) -> Vec<Divergence> {
         self.pull();
+        self.follow_tour();
         let Some((input, camera)) = self.steering() else { return Vec::new() };
         self.follow_second();
         self.give_back_to_triggers(&input);
         self.sim.overrides.blend = self.layers.blend();
         let divergences = self.sim.tick(&input, camera);
         self.follow_replay(&input, camera);
-        self.tour.tick(self.sim.tick_secs());
         self.observe_first_steps(&input);
         self.note_refusal();
         self.follow_race();

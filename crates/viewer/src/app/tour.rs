@@ -1,12 +1,21 @@
-//! The tour: the pad of a script, played in the window when there was no input for a while. Any input ends it.
+//! The tour: in the window, when there was no input for a while, a script moves the pad, or it follows the way over the course. Any input
+//! ends it.
 
 use gamepad::Script;
-use policy_core::GamepadState;
+use playground::Follower;
+use policy_core::{GamepadState, Heading};
+
+use super::{App, ViewerCommand};
+use crate::sim::SharedWorld;
 
 /// Seconds without any input after which the tour begins.
 pub const IDLE_SECS: f32 = 45.0;
 /// Longest step that counts, seconds: a window that was moved or asleep was not idle.
 const LONGEST_STEP: f32 = 0.25;
+/// On the way to one point for longer, it begins anew, seconds.
+const STUCK_SECS: f32 = 30.0;
+/// It rests at the end of the way before it begins anew, seconds.
+const REST_SECS: f32 = 4.0;
 
 /// The script of the tour.
 const SCRIPT: &str = include_str!("../../../../assets/scripts/tour.ron");
@@ -15,13 +24,29 @@ const SCRIPT: &str = include_str!("../../../../assets/scripts/tour.ron");
 #[derive(Clone, Debug, Default)]
 pub struct Tour {
     idle_secs: f32,
-    playing: Option<(Script, f64)>,
+    playing: Option<Playing>,
+}
+
+/// What plays.
+#[derive(Clone, Debug)]
+enum Playing {
+    /// Begins with the next tick.
+    Due,
+    /// A script, and how far it is, seconds.
+    Script(Script, f64),
+    /// Over the course: the pad of this tick, and for how long it rests at the end, seconds.
+    Course { follower: Follower, pad: GamepadState, rested: f32 },
 }
 
 impl Tour {
     /// Somebody did something: the tour ends, or waits anew.
     pub fn interrupt(&mut self) {
         *self = Self::default();
+    }
+
+    /// Begins with the next tick.
+    pub fn start(&mut self) {
+        self.playing = Some(Playing::Due);
     }
 
     /// Lets `dt` seconds of the clock on the wall pass. The tour begins after [`IDLE_SECS`] of them in a row with
@@ -32,24 +57,57 @@ impl Tour {
         }
         self.idle_secs += dt.clamp(0.0, LONGEST_STEP);
         if self.playing.is_none() && self.idle_secs > IDLE_SECS {
-            self.playing = Script::from_ron(SCRIPT).ok().map(|script| (script, 0.0));
+            self.start();
         }
     }
 
-    /// Lets a tick of `dt_secs` of the world pass. At its end the script begins anew.
-    pub fn tick(&mut self, dt_secs: f32) {
-        if let Some((script, at)) = &mut self.playing {
-            *at += f64::from(dt_secs);
-            if *at > script.duration() {
-                *at = 0.0;
+    /// Begins when it is due: over the course where there is a way, else by the script. True when it begins at the start of a way.
+    fn begin(&mut self, shared: Option<&SharedWorld>) -> bool {
+        if !matches!(self.playing, Some(Playing::Due)) {
+            return false;
+        }
+        let has_way = shared.is_some_and(|shared| !shared.scene().way.is_empty());
+        self.playing = if has_way {
+            let (follower, pad) = (Follower::default(), GamepadState::default());
+            Some(Playing::Course { follower, pad, rested: 0.0 })
+        } else {
+            Script::from_ron(SCRIPT).ok().map(|script| Playing::Script(script, 0.0))
+        };
+        has_way
+    }
+
+    /// Moves the pad for a tick of `dt_secs`. At its end it begins anew.
+    fn tick(&mut self, (player, camera): (&Place, Heading), shared: Option<&SharedWorld>, dt_secs: f32) {
+        match (&mut self.playing, shared) {
+            (Some(Playing::Script(script, at)), _) => {
+                *at += f64::from(dt_secs);
+                if *at > script.duration() {
+                    *at = 0.0;
+                }
             }
+            (Some(Playing::Course { follower, pad, rested }), Some(shared)) => {
+                let view = (player.at, player.heading, camera);
+                let moved = follower.tick(&shared.scene().way, view, |prop| shared.motion_of(prop), dt_secs);
+                *rested += if moved.is_none() { dt_secs } else { 0.0 };
+                *pad = moved.unwrap_or_default();
+                if follower.secs_on_the_way() > STUCK_SECS || *rested > REST_SECS {
+                    self.playing = Some(Playing::Due);
+                }
+            }
+            // The playground was left.
+            (Some(Playing::Course { .. }), None) => self.interrupt(),
+            (Some(Playing::Due) | None, _) => {}
         }
     }
 
-    /// The pad of the script, while it plays.
+    /// The pad, while it plays.
     #[must_use]
     pub fn pad(&self) -> Option<GamepadState> {
-        self.playing.as_ref().map(|(script, at)| script.state_at(*at))
+        Some(match self.playing.as_ref()? {
+            Playing::Due => GamepadState::default(),
+            Playing::Script(script, at) => script.state_at(*at),
+            Playing::Course { pad, .. } => *pad,
+        })
     }
 
     /// True while it plays.
@@ -59,15 +117,39 @@ impl Tour {
     }
 }
 
+/// Where a character is.
+struct Place {
+    at: glam::Vec2,
+    heading: Heading,
+}
+
+impl App {
+    /// Lets the tour move its pad for the next tick. Over a course it begins at the start, with everything put back.
+    pub(super) fn follow_tour(&mut self) {
+        if self.tour.begin(self.sim.shared()) {
+            self.apply(ViewerCommand::Reset);
+        }
+        let (player, camera) = (self.sim.player(), self.camera.heading());
+        let place = Place { at: player.position(), heading: player.heading() };
+        self.tour.tick((&place, camera), self.sim.shared(), self.sim.tick_secs());
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
 
-    /// A tour that has waited for `secs` seconds.
+    /// A tour by script that has waited for `secs` seconds.
     fn waited(secs: f32) -> Tour {
         let mut tour = Tour::default();
         (0..(secs * 10.0) as usize).for_each(|_| tour.advance(0.1, true));
+        tour.begin(None);
         tour
+    }
+
+    fn tick(tour: &mut Tour) {
+        let place = Place { at: glam::Vec2::ZERO, heading: Heading::FORWARD };
+        tour.tick((&place, Heading::FORWARD), None, 1.0 / 30.0);
     }
 
     #[test]
@@ -75,7 +157,7 @@ mod tests {
         assert!(!waited(IDLE_SECS - 1.0).is_playing());
         let mut tour = waited(IDLE_SECS + 1.0);
         assert_eq!(tour.pad(), Some(GamepadState::default()));
-        (0..150).for_each(|_| tour.tick(1.0 / 30.0));
+        (0..150).for_each(|_| tick(&mut tour));
         assert!(tour.pad().unwrap().left_stick[1] > 0.9, "after five seconds it walks");
         tour.interrupt();
         assert_eq!(tour.pad(), None);
@@ -97,7 +179,7 @@ mod tests {
     fn it_plays_round_and_round() {
         let mut tour = waited(IDLE_SECS + 1.0);
         let duration = Script::from_ron(SCRIPT).unwrap().duration();
-        (0..(duration * 30.0) as usize + 5).for_each(|_| tour.tick(1.0 / 30.0));
+        (0..(duration * 30.0) as usize + 5).for_each(|_| tick(&mut tour));
         assert!(tour.is_playing());
         assert_eq!(tour.pad(), Some(GamepadState::default()), "the first seconds are at rest");
     }

@@ -40,9 +40,10 @@ impl App {
             || self.pad.second.is_some_and(|pad| !at_rest(&pad))
             || self.keys != Keys::default();
         let busy = self.help || self.leaving || self.choosing || self.recording.is_some();
+        let is_free = matches!(self.replaying, Replaying::Off);
         let runs = !self.clock.paused && self.failure.is_none() && self.sim.playback().is_none();
-        let wanted = self.layout.preferences.plays_tour;
-        self.tour.advance(dt, wanted && runs && !busy && !steered);
+        let wanted = self.layout.preferences.plays_tour || self.tour.is_playing();
+        self.tour.advance(dt, wanted && runs && is_free && !busy && !steered);
         self.toasts.advance(dt);
         if self.first_steps.are_over() {
             self.layout.preferences.shows_first_steps = false;

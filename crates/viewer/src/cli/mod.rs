@@ -40,6 +40,8 @@ Examples:
       the bare floor, for the method
   policy-space --headless --scene playground --script assets/scripts/walk.ron --seconds 8 --frames out/
       pictures of a walk into the crates of the playground
+  policy-space --tour
+      the course of the playground by itself, until somebody presses a key
   policy-space --terrain wavy --characters 20
       twenty characters on low hills
   policy-space --headless --script assets/scripts/tour.ron --seconds 20 --report report.json --frames out/
@@ -86,6 +88,12 @@ pub struct Demo {
     /// Pad input recorded from a device by `pad record`, instead of a script.
     #[arg(long, value_name = "FILE", conflicts_with = "script")]
     pub recording: Option<PathBuf>,
+    /// Begin with the tour: over the course of the playground by itself, elsewhere by a script. Any input ends it.
+    #[arg(
+        long,
+        conflicts_with_all = ["script", "recording", "second_script", "replay", "poses", "record_replay"]
+    )]
+    pub tour: bool,
     /// Pad input of a second player over time (RON), who takes over a character of the playground.
     #[arg(long, value_name = "FILE", conflicts_with_all = ["replay", "poses", "record_replay"])]
     pub second_script: Option<PathBuf>,

@@ -90,5 +90,8 @@ pub fn open(demo: &Demo) -> anyhow::Result<Opened> {
         app.camera.distance = distance;
     }
     app.toasts = toasts;
+    if demo.tour {
+        app.tour.start();
+    }
     Ok(Opened { app, appearance, layout: home })
 }

@@ -10,8 +10,8 @@ use std::time::{Duration, Instant};
 
 use glam::{Vec2, Vec3};
 use physics_bridge::{
-    CharacterHandle, Diverging, FixtureHandle, Grab, HISTORY_SECS, Handle, Model, Movable, PropHandle,
-    Remedy, World,
+    CharacterHandle, Diverging, FixtureHandle, Grab, HISTORY_SECS, Handle, Model, Motion, Movable,
+    PropHandle, Remedy, World,
 };
 use policy_core::{BodyId, Heading};
 
@@ -143,7 +143,16 @@ impl SharedWorld {
     /// The prop of that name in the scene, while it is there.
     #[must_use]
     pub fn prop_named(&self, name: &str) -> Option<PropHandle> {
-        let index = self.scene.props.iter().position(|prop| prop.name == name)?;
+        self.prop_at(self.scene.props.iter().position(|prop| prop.name == name)?)
+    }
+
+    /// The motion of a prop, by its index in the scene, while it is there.
+    #[must_use]
+    pub fn motion_of(&self, index: usize) -> Option<Motion> {
+        self.world.motion(self.prop_at(index)?).ok()
+    }
+
+    fn prop_at(&self, index: usize) -> Option<PropHandle> {
         self.state.pieces.iter().find(|piece| piece.of_scene == Some(index)).map(|piece| piece.handle)
     }
 
