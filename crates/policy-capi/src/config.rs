@@ -49,6 +49,8 @@ pub struct PsConfig {
     pub start_node: i32,
     /// Time over which joint targets pass from one policy to the other when a skill starts or ends, seconds; 0 for a jump.
     pub handover_secs: f32,
+    /// Time after a skill in which the character stays in the gait that the skill returns to and turns little, seconds; 0 to go on at once.
+    pub settle_secs: f32,
     /// Not 0: fast gaits slow down and slow ones speed up while the target lies far off the heading.
     pub turn_assist: i32,
     /// Angle from which the turn assist slows a faster gait down, radians.
@@ -100,6 +102,7 @@ impl Default for PsConfig {
             assist_rise: config.assist_rise.into(),
             start_node: id(config.start.index()),
             handover_secs: config.handover_secs,
+            settle_secs: config.settle_secs,
             turn_assist: config.turn_assist.is_some().into(),
             turn_begin_radians: turn.begin_radians,
             turn_full_radians: turn.full_radians,
@@ -160,6 +163,7 @@ impl PsConfig {
             start: NodeId::new(index("node", self.start_node, pack.graph().nodes().len())?),
             blend_mode: blend_mode(self.blend_mode)?,
             handover_secs: not_negative("handover_secs", self.handover_secs)?,
+            settle_secs: not_negative("settle_secs", self.settle_secs)?,
             turn_assist: (self.turn_assist != 0).then_some(turn),
             steering: (self.steering != 0).then_some(steering),
             give_way: (self.give_way != 0).then_some(give_way),

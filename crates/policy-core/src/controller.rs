@@ -227,6 +227,7 @@ impl Controller {
             true => next_unevenness(self.state.unevenness, state, dt),
             false => 0.0,
         };
+        self.state.settle_secs = (self.state.settle_secs - dt).max(0.0);
         self.run_skill(state, heights, dt);
         self.detect_fall(state, dt);
         self.request_skill(command.skill, state, heights, dt);
@@ -273,7 +274,8 @@ impl Controller {
         (report.position, report.goal, report.blend) = (position, position, position.blend());
     }
 
-    /// Moves along the graph: to the nearest node that a pending skill may start from, else to the command's goal. Leaving a
+    /// Moves along the graph: to the nearest node that a pending skill may start from, else to the command's goal, which waits while
+    /// the character settles after a skill. Leaving a
     /// low gait requires standing first.
     fn travel(&mut self, command: &Command, heights: Heights, dt: f32) {
         if self.state.report.skill.is_some() {
@@ -288,6 +290,7 @@ impl Controller {
                 let nearest = entry.iter().min_by(|a, b| cost(a).total_cmp(&cost(b)));
                 nearest.map(|&node| GraphPosition::node(node))
             }
+            None if self.state.settle_secs > 0.0 => None,
             None => command.goal.position(graph),
         };
         report.goal = graph.settled(goal.unwrap_or(report.position), report.position);
@@ -359,7 +362,10 @@ impl Controller {
 
     fn observe(&mut self, state: &CharacterState, command: &Command, dt: f32) {
         let strafing = strafing_share(self.pack.graph(), &self.state.report.blend);
-        let target_world = self.steered(state, self.target(state, command), strafing, dt);
+        let settles = self.state.settle_secs > 0.0;
+        let asked = self.target(state, command);
+        let asked = asked.map(|target| if settles { skills::nearly_ahead(state, target) } else { target });
+        let target_world = self.steered(state, asked, strafing, dt);
         let skeleton = self.pack.skeleton();
         let (observation, target) = self.input.split_at_mut(skeleton.observation_len());
         observe_into(skeleton, state, observation);

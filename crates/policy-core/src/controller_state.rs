@@ -32,6 +32,8 @@ pub struct ControllerState {
     pub(crate) handover_from: Vec<f32>,
     /// Seconds that the hand-over takes yet.
     pub(crate) handover_secs: f32,
+    /// Seconds that it settles yet after a skill.
+    pub(crate) settle_secs: f32,
     /// Seconds that the pending skill has waited.
     pub(crate) pending_secs: f32,
     /// What steering remembers.
@@ -88,6 +90,7 @@ impl ControllerState {
             targets: JointTargets::new(skeleton),
             handover_from: alloc::vec![0.0; skeleton.joint_count()],
             handover_secs: 0.0,
+            settle_secs: 0.0,
             pending_secs: 0.0,
             steering: SteeringState::default(),
             give_way: GiveWayState::default(),
@@ -116,6 +119,7 @@ impl ControllerState {
         self.targets.copy_from_slice(&other.targets);
         self.handover_from.copy_from_slice(&other.handover_from);
         self.handover_secs = other.handover_secs;
+        self.settle_secs = other.settle_secs;
         self.pending_secs = other.pending_secs;
         self.steering = other.steering;
         self.give_way = other.give_way;
@@ -133,6 +137,7 @@ impl ControllerState {
         self.targets.fill(0.0);
         self.handover_from.fill(0.0);
         self.handover_secs = 0.0;
+        self.settle_secs = 0.0;
         self.pending_secs = 0.0;
         self.steering = SteeringState::default();
         self.give_way = GiveWayState::default();
@@ -173,7 +178,13 @@ impl ControllerState {
         let all = skills.iter().chain(&ended).flatten().all(exists);
         field("skill", "skills of the pack", all)?;
         let mut numbers = self.targets.iter().chain(&self.handover_from).chain(self.history.parts().0);
-        let times = [self.fall.low_seconds, self.fall.rising_seconds, self.handover_secs, self.pending_secs];
+        let times = [
+            self.fall.low_seconds,
+            self.fall.rising_seconds,
+            self.handover_secs,
+            self.settle_secs,
+            self.pending_secs,
+        ];
         let steering = [self.steering.velocity.x, self.steering.velocity.y, self.steering.trim];
         let give_way = [self.give_way.speed, self.give_way.pace, self.give_way.stop_secs];
         let shares = [self.unevenness, self.urgency.to_move, self.urgency.to_stand];

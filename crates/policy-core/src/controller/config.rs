@@ -25,6 +25,8 @@ pub struct ControllerConfig {
     pub blend_mode: BlendMode,
     /// Time over which joint targets pass from one policy to the other when a skill starts or ends, seconds; 0 for a jump.
     pub handover_secs: f32,
+    /// Time after a skill in which the character stays in the gait that the skill returns to and turns little, seconds; 0 to go on at once.
+    pub settle_secs: f32,
     /// Slow down fast gaits while the target lies far off the heading, the default; `None` to leave turning to the policies.
     pub turn_assist: Option<TurnAssist>,
     /// Hold the course and lead into turns, the default; `None` to give the policies the target as it is.
@@ -48,6 +50,7 @@ impl Default for ControllerConfig {
             start: NodeId::new(0),
             blend_mode: BlendMode::Parameters,
             handover_secs: 0.0,
+            settle_secs: 0.5,
             turn_assist: Some(TurnAssist::default()),
             steering: Some(Steering::default()),
             give_way: Some(GiveWay::default()),

@@ -30,6 +30,19 @@ const STILL: [f32; 2] = [0.05, 0.2];
 /// From then on another policy may act so long, once in this time, seconds.
 const WAY_OUT_SECONDS: [f32; 2] = [1.0, 1.5];
 
+/// A target further aside is shown at this angle while a character settles after a skill, radians.
+const SETTLING_RADIANS: f32 = 0.5;
+
+/// A target turned about the root until it lies nearly ahead.
+pub(super) fn nearly_ahead(state: &CharacterState, target: Vec2) -> Vec2 {
+    let root = state.root();
+    let heading = Heading::from_rotation(root.rotation);
+    let to_target = heading.heading_from_world_2d(target - root.position.truncate());
+    let off = libm::atan2f(to_target.y, to_target.x);
+    let by = Heading::from_angle(off.clamp(-SETTLING_RADIANS, SETTLING_RADIANS) - off);
+    root.position.truncate() + heading.world_from_heading_2d(by.world_from_heading_2d(to_target))
+}
+
 /// The lowest gait of the paths, to move a character on whose recovery is stuck; `None` while it is not. Once it acts it goes on
 /// for the rest of its time: `before` is the blend of the last tick.
 pub(super) fn way_out(
@@ -68,6 +81,7 @@ impl Controller {
         self.set_position(GraphPosition::node(skill.returns_to));
         self.state.fall.reset();
         self.begin_hand_over();
+        self.state.settle_secs = self.config.settle_secs;
         // A character that lies where its time to stand up is over tries again at once.
         let low = fall_height(pack.graph(), self.state.report.position).is_some_and(|h| heights.root < h);
         if self.config.auto_recover && low && pack.recovery() == Some(progress.skill) {
@@ -152,6 +166,7 @@ impl Controller {
         report.fallen = false;
         self.state.fall.reset();
         self.state.history.clear();
+        self.state.settle_secs = 0.0;
         self.begin_hand_over();
     }
 

@@ -62,6 +62,9 @@ pub(crate) struct Arguments {
     /// Seconds in which the player's controller passes from the joint targets before a skill to those of the skill.
     #[arg(long, default_value_t = 0.0, value_parser = seconds)]
     handover_secs: f32,
+    /// Seconds after a skill in which the player's controller stays in the gait that the skill returns to.
+    #[arg(long, default_value_t = ControllerConfig::default().settle_secs, value_parser = seconds)]
+    settle_secs: f32,
 }
 
 /// A time that a controller takes.
@@ -112,6 +115,7 @@ pub(crate) fn run(
         steering,
         turn_assist,
         handover_secs,
+        settle_secs: arguments.settle_secs,
         give_way,
         footing,
         agility,
