@@ -236,6 +236,7 @@ impl Controller {
         let command = self.giving_way(state, &command, dt);
         self.travel(&command, heights, dt);
         self.state.urgency = match self.config.agility {
+            true if self.state.settle_secs > 0.0 => Urgency::default(),
             true => {
                 let place = (self.pack.graph(), self.state.report.position, self.state.report.goal);
                 self.state.urgency.next(place, state, command.target, dt)
