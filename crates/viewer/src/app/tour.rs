@@ -2,6 +2,7 @@
 //! ends it.
 
 use gamepad::Script;
+use glam::Vec2;
 use playground::Follower;
 use policy_core::{GamepadState, Heading};
 
@@ -16,6 +17,11 @@ const LONGEST_STEP: f32 = 0.25;
 const STUCK_SECS: f32 = 30.0;
 /// It rests at the end of the way before it begins anew, seconds.
 const REST_SECS: f32 = 4.0;
+
+/// The camera stays where it is while it is within this of the character's heading, radians.
+const LEAST_TURN: f32 = 0.35;
+/// Furthest that the tour pushes the stick of the camera.
+const MOST_STICK: f32 = 0.4;
 
 /// The script of the tour.
 const SCRIPT: &str = include_str!("../../../../assets/scripts/tour.ron");
@@ -35,7 +41,7 @@ enum Playing {
     /// A script, and how far it is, seconds.
     Script(Script, f64),
     /// Over the course: the pad of this tick, and for how long it rests at the end, seconds.
-    Course { follower: Follower, pad: GamepadState, rested: f32 },
+    Way { follower: Follower, pad: GamepadState, rested: f32 },
 }
 
 impl Tour {
@@ -69,7 +75,7 @@ impl Tour {
         let has_way = shared.is_some_and(|shared| !shared.scene().way.is_empty());
         self.playing = if has_way {
             let (follower, pad) = (Follower::default(), GamepadState::default());
-            Some(Playing::Course { follower, pad, rested: 0.0 })
+            Some(Playing::Way { follower, pad, rested: 0.0 })
         } else {
             Script::from_ron(SCRIPT).ok().map(|script| Playing::Script(script, 0.0))
         };
@@ -77,7 +83,12 @@ impl Tour {
     }
 
     /// Moves the pad for a tick of `dt_secs`. At its end it begins anew.
-    fn tick(&mut self, (player, camera): (&Place, Heading), shared: Option<&SharedWorld>, dt_secs: f32) {
+    fn tick(
+        &mut self,
+        (at, heading, camera): (Vec2, Heading, Heading),
+        shared: Option<&SharedWorld>,
+        dt_secs: f32,
+    ) {
         match (&mut self.playing, shared) {
             (Some(Playing::Script(script, at)), _) => {
                 *at += f64::from(dt_secs);
@@ -85,17 +96,18 @@ impl Tour {
                     *at = 0.0;
                 }
             }
-            (Some(Playing::Course { follower, pad, rested }), Some(shared)) => {
-                let view = (player.at, player.heading, camera);
+            (Some(Playing::Way { follower, pad, rested }), Some(shared)) => {
+                let view = (at, heading, camera);
                 let moved = follower.tick(&shared.scene().way, view, |prop| shared.motion_of(prop), dt_secs);
                 *rested += if moved.is_none() { dt_secs } else { 0.0 };
                 *pad = moved.unwrap_or_default();
+                pad.right_stick[0] = turn_of_camera(heading, camera);
                 if follower.secs_on_the_way() > STUCK_SECS || *rested > REST_SECS {
                     self.playing = Some(Playing::Due);
                 }
             }
             // The playground was left.
-            (Some(Playing::Course { .. }), None) => self.interrupt(),
+            (Some(Playing::Way { .. }), None) => self.interrupt(),
             (Some(Playing::Due) | None, _) => {}
         }
     }
@@ -106,7 +118,7 @@ impl Tour {
         Some(match self.playing.as_ref()? {
             Playing::Due => GamepadState::default(),
             Playing::Script(script, at) => script.state_at(*at),
-            Playing::Course { pad, .. } => *pad,
+            Playing::Way { pad, .. } => *pad,
         })
     }
 
@@ -117,10 +129,11 @@ impl Tour {
     }
 }
 
-/// Where a character is.
-struct Place {
-    at: glam::Vec2,
-    heading: Heading,
+/// The right stick that brings a camera slowly behind who looks along `heading`.
+fn turn_of_camera(heading: Heading, camera: Heading) -> f32 {
+    let left = camera.heading_from_world_2d(heading.direction());
+    let off = left.y.atan2(left.x);
+    if off.abs() > LEAST_TURN { -(0.5 * off).clamp(-MOST_STICK, MOST_STICK) } else { 0.0 }
 }
 
 impl App {
@@ -130,8 +143,8 @@ impl App {
             self.apply(ViewerCommand::Reset);
         }
         let (player, camera) = (self.sim.player(), self.camera.heading());
-        let place = Place { at: player.position(), heading: player.heading() };
-        self.tour.tick((&place, camera), self.sim.shared(), self.sim.tick_secs());
+        let view = (player.position(), player.heading(), camera);
+        self.tour.tick(view, self.sim.shared(), self.sim.tick_secs());
     }
 }
 
@@ -148,8 +161,7 @@ mod tests {
     }
 
     fn tick(tour: &mut Tour) {
-        let place = Place { at: glam::Vec2::ZERO, heading: Heading::FORWARD };
-        tour.tick((&place, Heading::FORWARD), None, 1.0 / 30.0);
+        tour.tick((Vec2::ZERO, Heading::FORWARD, Heading::FORWARD), None, 1.0 / 30.0);
     }
 
     #[test]
@@ -182,5 +194,21 @@ mod tests {
         (0..(duration * 30.0) as usize + 5).for_each(|_| tick(&mut tour));
         assert!(tour.is_playing());
         assert_eq!(tour.pad(), Some(GamepadState::default()), "the first seconds are at rest");
+    }
+
+    #[test]
+    fn the_camera_comes_behind_the_character() {
+        for turned in [2.0, -2.0] {
+            let mut camera = crate::camera::Camera::default();
+            let heading = Heading::from_angle(camera.heading().angle() + turned);
+            let off = |camera: &crate::camera::Camera| {
+                camera.heading().direction().angle_to(heading.direction()).abs()
+            };
+            for _ in 0..240 {
+                let stick = [turn_of_camera(heading, camera.heading()), 0.0];
+                camera.advance(1.0 / 60.0, stick, glam::Vec3::ZERO, heading, 0.0);
+            }
+            assert!(off(&camera) < LEAST_TURN + 0.01, "{}", off(&camera));
+        }
     }
 }
