@@ -9,7 +9,7 @@ use serde::Deserialize;
 const JOG: f32 = 0.4;
 /// It jogs once it looks this much along its way: the cosine of the angle between them.
 const LOOKS_ALONG: f32 = 0.8;
-/// A pendulum nearer to the line of the way than this may hit who passes, metres.
+/// A pendulum nearer to the line of the way than this may hit what passes, metres.
 const CLEAR_M: f32 = 1.6;
 
 /// How a stretch of the way is taken.
@@ -55,7 +55,8 @@ impl Follower {
         motion: impl FnOnce(usize) -> Option<Motion>,
         dt_secs: f32,
     ) -> Option<GamepadState> {
-        if at.distance(way.get(self.next)?.at) < way[self.next].near_m {
+        let next = way.get(self.next)?;
+        if at.distance(next.at) < next.near_m {
             *self = Self { next: self.next + 1, ..Self::default() };
         }
         let waypoint = way.get(self.next)?;

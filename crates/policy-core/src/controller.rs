@@ -234,6 +234,7 @@ impl Controller {
         let assist = self.config.turn_assist.filter(|_| self.state.report.pending_skill.is_none());
         let command = assist.map_or(*command, |a| a.adjusted(self.pack.graph(), state, command));
         let command = self.giving_way(state, &command, dt);
+        let command = self.settling(state, &command);
         self.travel(&command, heights, dt);
         self.state.urgency = match self.config.agility {
             true if self.state.settle_secs > 0.0 => Urgency::default(),
@@ -275,8 +276,7 @@ impl Controller {
         (report.position, report.goal, report.blend) = (position, position, position.blend());
     }
 
-    /// Moves along the graph: to the nearest node that a pending skill may start from, else to the command's goal, which waits while
-    /// the character settles after a skill. Leaving a
+    /// Moves along the graph: to the nearest node that a pending skill may start from, else to the command's goal. Leaving a
     /// low gait requires standing first.
     fn travel(&mut self, command: &Command, heights: Heights, dt: f32) {
         if self.state.report.skill.is_some() {
@@ -291,7 +291,6 @@ impl Controller {
                 let nearest = entry.iter().min_by(|a, b| cost(a).total_cmp(&cost(b)));
                 nearest.map(|&node| GraphPosition::node(node))
             }
-            None if self.state.settle_secs > 0.0 => None,
             None => command.goal.position(graph),
         };
         report.goal = graph.settled(goal.unwrap_or(report.position), report.position);
@@ -363,10 +362,7 @@ impl Controller {
 
     fn observe(&mut self, state: &CharacterState, command: &Command, dt: f32) {
         let strafing = strafing_share(self.pack.graph(), &self.state.report.blend);
-        let settles = self.state.settle_secs > 0.0;
-        let asked = self.target(state, command);
-        let asked = asked.map(|target| if settles { skills::nearly_ahead(state, target) } else { target });
-        let target_world = self.steered(state, asked, strafing, dt);
+        let target_world = self.steered(state, self.target(state, command), strafing, dt);
         let skeleton = self.pack.skeleton();
         let (observation, target) = self.input.split_at_mut(skeleton.observation_len());
         observe_into(skeleton, state, observation);

@@ -4,9 +4,9 @@ mod common;
 
 use std::sync::Arc;
 
-use common::standing;
+use common::{hand_over, standing};
 use policy_core::glam::Vec2;
-use policy_core::{Command, Controller, ControllerConfig, ControllerState, Goal, GraphPosition};
+use policy_core::{Command, Controller, ControllerConfig, Goal, GraphPosition};
 
 const DT: f32 = 1.0 / 30.0;
 
@@ -29,7 +29,9 @@ fn after_a_skill_the_character_settles_before_it_goes_on() {
             let [x, y] = controller.report().target;
             seen.push(y.atan2(x));
             if saved {
-                controller = restored(&controller);
+                let before =
+                    std::mem::replace(&mut controller, Controller::with_config(pack.clone(), config));
+                hand_over(&before, &mut controller);
             }
             controller.tick(&standing(), &aside, DT);
             ticks += 1;
@@ -46,17 +48,4 @@ fn after_a_skill_the_character_settles_before_it_goes_on() {
     );
     assert_eq!(settled(0.5, true), settled(0.5, false), "it is part of the state");
     assert!(settled(0.0, false).0 <= 1);
-}
-
-/// A new controller that goes on from the bytes of another's state.
-fn restored(controller: &Controller) -> Controller {
-    let mut state = ControllerState::new(controller.pack());
-    controller.save_into(&mut state);
-    let mut bytes = vec![0; state.byte_len()];
-    state.write_bytes(&mut bytes);
-    let mut read = ControllerState::new(controller.pack());
-    read.read_bytes(controller.pack(), &bytes).unwrap();
-    let mut other = Controller::with_config(controller.pack().clone(), *controller.config());
-    other.restore(&read).unwrap();
-    other
 }

@@ -6,7 +6,7 @@ use glam::Vec2;
 
 use super::Controller;
 use crate::blend::Blend;
-use crate::command::Command;
+use crate::command::{Command, Goal};
 use crate::controller_state::ControllerState;
 use crate::fall::{Heights, fall_height, lies};
 use crate::heading::Heading;
@@ -34,7 +34,7 @@ const WAY_OUT_SECONDS: [f32; 2] = [1.0, 1.5];
 const SETTLING_RADIANS: f32 = 0.5;
 
 /// A target turned about the root until it lies nearly ahead.
-pub(super) fn nearly_ahead(state: &CharacterState, target: Vec2) -> Vec2 {
+fn nearly_ahead(state: &CharacterState, target: Vec2) -> Vec2 {
     let root = state.root();
     let heading = Heading::from_rotation(root.rotation);
     let to_target = heading.heading_from_world_2d(target - root.position.truncate());
@@ -136,6 +136,15 @@ impl Controller {
             self.state.report.skill_refused = Some((pending, Refusal::TookTooLong));
             self.state.report.pending_skill = None;
         }
+    }
+
+    /// The command while the character settles after a skill: to stay in its gait and turn little.
+    pub(super) fn settling(&self, state: &CharacterState, command: &Command) -> Command {
+        if self.state.settle_secs <= 0.0 {
+            return *command;
+        }
+        let target = command.target.map(|target| nearly_ahead(state, target));
+        Command { goal: Goal::Stay, target, ..*command }
     }
 
     /// The target of a tick: the command's. A pending skill that needs speed runs straight ahead while there is none.

@@ -129,10 +129,9 @@ impl Tour {
     }
 }
 
-/// The right stick that brings a camera slowly behind who looks along `heading`.
+/// The right stick that brings a camera slowly behind a character that looks along `heading`.
 fn turn_of_camera(heading: Heading, camera: Heading) -> f32 {
-    let left = camera.heading_from_world_2d(heading.direction());
-    let off = left.y.atan2(left.x);
+    let off = Heading::from_angle(heading.angle() - camera.angle()).angle();
     if off.abs() > LEAST_TURN { -(0.5 * off).clamp(-MOST_STICK, MOST_STICK) } else { 0.0 }
 }
 
