@@ -1,5 +1,5 @@
 //! What a release needs and `cargo xtask test` leaves out, because it compiles Rapier and Bevy anew: crates that can be
-//! published, the oldest direct dependencies, and the features that the other checks do not turn on.
+//! published, the oldest direct dependencies, and the Bevy plug-in without its features.
 
 use std::fs;
 
@@ -17,14 +17,13 @@ const CRATES: [(&str, &str); 4] = [
 ];
 
 /// Those that do not need Bevy.
-pub const PUBLISH: &[Step] = &[DRY_RUN, OLDEST, DETERMINISM, BEVY_DRY_RUN];
+pub const PUBLISH: &[Step] = &[DRY_RUN, OLDEST, BEVY_DRY_RUN];
 
 /// All of them.
-pub const PUBLISH_ALL: &[Step] = &[DRY_RUN, OLDEST, DETERMINISM, BEVY_DRY_RUN, BEVY_PLAIN];
+pub const PUBLISH_ALL: &[Step] = &[DRY_RUN, OLDEST, BEVY_DRY_RUN, BEVY_PLAIN];
 
 const DRY_RUN: Step = Step { name: "cargo publish --dry-run", run: dry_run };
 const OLDEST: Step = Step { name: "oldest direct dependencies", run: oldest };
-const DETERMINISM: Step = Step { name: "Rapier: enhanced-determinism", run: determinism };
 const BEVY_DRY_RUN: Step = Step { name: "engines/bevy: publish --dry-run", run: bevy_dry_run };
 const BEVY_PLAIN: Step = Step { name: "engines/bevy: no features", run: bevy_plain };
 
@@ -62,12 +61,6 @@ fn oldest(workspace: &Workspace) -> Result<Verdict> {
     let mut check = workspace.cargo();
     check.args(["check", "--locked", "--workspace", "--lib", "--bins", "--target-dir"]);
     run(check.arg(workspace.target()).arg("--manifest-path").arg(&manifest))?;
-    Ok(Verdict::Passed)
-}
-
-/// Tests Rapier's characters with the same bits on every processor.
-fn determinism(workspace: &Workspace) -> Result<Verdict> {
-    run(workspace.cargo().args(["test", "-p", "physics-rapier", "--features", "enhanced-determinism"]))?;
     Ok(Verdict::Passed)
 }
 

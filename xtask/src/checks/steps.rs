@@ -40,10 +40,17 @@ pub const ALL: &[Step] = &[
     Step { name: "demo with sound", run: sound },
     Step { name: "page: wasm32", run: page },
     C_PROGRAM,
+    Step { name: "Rapier: enhanced-determinism", run: determinism },
     Step { name: "engines/bevy: no window", run: bevy::check },
     Step { name: "documentation", run: documentation },
     Step { name: "tests", run: tests },
 ];
+
+/// Tests Rapier's characters with the same bits on every processor.
+fn determinism(workspace: &Workspace) -> Result<Verdict> {
+    run(workspace.cargo().args(["test", "-p", "physics-rapier", "--features", "enhanced-determinism"]))?;
+    Ok(Verdict::Passed)
+}
 
 fn formatting(workspace: &Workspace) -> Result<Verdict> {
     require_component(workspace, "fmt", "rustfmt")?;
