@@ -70,7 +70,8 @@ fn bevy_dry_run(workspace: &Workspace) -> Result<Verdict> {
     let channel = bevy::provided(workspace)?;
     let mut publish = bevy::cargo(workspace, &channel);
     publish.args(["publish", "--dry-run", "--allow-dirty", "--no-verify"]);
-    for (name, folder) in CRATES {
+    // A patch that nothing needs would be written into its lock file.
+    for (name, folder) in CRATES.into_iter().filter(|(name, _)| *name != "policy-space-gamepad") {
         let folder = workspace.root().join(folder).display().to_string().replace('\\', "/");
         publish.args(["--config", &format!("patch.crates-io.{name}.path=\"{folder}\"")]);
     }

@@ -4,6 +4,7 @@ mod bisect;
 mod get_up;
 mod pushes;
 mod random_pad;
+mod restless;
 mod roam;
 mod robustness;
 mod terrain;

@@ -2,12 +2,11 @@
 
 use std::collections::BTreeMap;
 
-use policy_core::bindings::{Bindings, Control};
 use policy_core::training::fall_height;
-use policy_core::{Button, Buttons, CharacterPack, GraphPosition, SkillEnd};
-use random::Rng;
+use policy_core::{CharacterPack, GraphPosition, SkillEnd};
 use serde::{Deserialize, Serialize};
 
+use super::restless::Player;
 use crate::Rig;
 use crate::trial::{Gait, TICK_SECS, Trial, ticks};
 
@@ -22,7 +21,9 @@ pub enum PadKind {
     Stance,
     /// Stick and the button of the style path.
     Style,
-    /// Stick, both triggers and the button of the style path.
+    /// Stick and the button of the strafing path; while that is held the camera turns.
+    Strafe,
+    /// Stick, both triggers and the buttons of the paths.
     AllButSkills,
     /// The same, and the buttons of the skills.
     Everything,
@@ -30,11 +31,12 @@ pub enum PadKind {
 
 impl PadKind {
     /// All kinds.
-    pub const ALL: [PadKind; 6] = [
+    pub const ALL: [PadKind; 7] = [
         PadKind::Stick,
         PadKind::Speed,
         PadKind::Stance,
         PadKind::Style,
+        PadKind::Strafe,
         PadKind::AllButSkills,
         PadKind::Everything,
     ];
@@ -47,12 +49,13 @@ impl PadKind {
             PadKind::Speed => "speed",
             PadKind::Stance => "stance",
             PadKind::Style => "style",
+            PadKind::Strafe => "strafe",
             PadKind::AllButSkills => "all_but_skills",
             PadKind::Everything => "everything",
         }
     }
 
-    fn moves(self, kind: PadKind) -> bool {
+    pub(super) fn moves(self, kind: PadKind) -> bool {
         self == kind || matches!(self, PadKind::AllButSkills | PadKind::Everything)
     }
 }
@@ -98,7 +101,7 @@ pub fn measure_random_pad(rig: &Rig<'_>) -> BTreeMap<String, RandomPadReport> {
 
 fn play(rig: &Rig<'_>, walk: &Gait, kind: PadKind, seed: u64) -> Count {
     let mut trial = Trial::new(rig.model, rig.pack, rig.config, walk);
-    let mut player = Player::new(kind, Rng::new(seed, 41));
+    let mut player = Player::new(kind, rig.pack, seed);
     let (mut count, mut raised) = (Count::default(), false);
     for _ in 0..ticks(rig.effort.pad_secs) {
         player.hold(&mut trial);
@@ -158,75 +161,5 @@ fn is_rising(pack: &CharacterPack, from: GraphPosition, to: GraphPosition) -> bo
     match (fall_height(pack.graph(), from), fall_height(pack.graph(), to)) {
         (Some(from), Some(to)) => from < to,
         (from, to) => from.is_none() && to.is_some(),
-    }
-}
-
-/// A restless player.
-struct Player {
-    kind: PadKind,
-    rng: Rng,
-    skills: Vec<Button>,
-    style: Option<Button>,
-    /// Seconds until the stick, the triggers, the style button and the skill buttons change.
-    change_in: [f32; 5],
-}
-
-impl Player {
-    fn new(kind: PadKind, rng: Rng) -> Self {
-        let bindings = Bindings::default();
-        let skills = bindings.skills.into_iter().map(|(button, _)| button).collect();
-        let style = bindings.paths.iter().find_map(|binding| match binding.control {
-            Control::Button(button) => Some(button),
-            _ => None,
-        });
-        Self { kind, rng, skills, style, change_in: [1.0, 2.0, 2.0, 2.0, 3.0] }
-    }
-
-    /// Moves the controls of the pad.
-    fn hold(&mut self, trial: &mut Trial) {
-        let Self { kind, rng, skills, style: button, change_in } = self;
-        change_in.iter_mut().for_each(|secs| *secs -= TICK_SECS);
-        let [stick, speed, stance, style, skill] = change_in;
-        if *stick <= 0.0 {
-            *stick = rng.range(0.4, 3.0);
-            let push = mostly_ends(rng, 0.15, 0.6);
-            trial.steer(rng.angle(), push);
-        }
-        if kind.moves(PadKind::Speed) && *speed <= 0.0 {
-            *speed = rng.range(0.5, 4.0);
-            trial.pad.right_trigger = mostly_ends(rng, 0.4, 0.3);
-        }
-        if kind.moves(PadKind::Stance) && *stance <= 0.0 {
-            *stance = rng.range(0.5, 4.0);
-            trial.pad.left_trigger = mostly_ends(rng, 0.4, 0.3);
-        }
-        let mut buttons = Buttons::NONE;
-        if let Some(button) = *button {
-            buttons.set(button, trial.pad.buttons.contains(button));
-        }
-        if kind.moves(PadKind::Style) && *style <= 0.0 {
-            *style = rng.range(0.5, 4.0);
-            let held = rng.chance(0.3);
-            if let Some(button) = *button {
-                buttons.set(button, held);
-            }
-        }
-        if *kind == PadKind::Everything && *skill <= 0.0 {
-            *skill = rng.range(1.0, 8.0);
-            buttons = buttons.with(skills[rng.index(skills.len())]);
-        }
-        trial.pad.buttons = buttons;
-    }
-}
-
-/// 0 and 1 with the given probabilities, else anything between.
-fn mostly_ends(rng: &mut Rng, zero: f32, one: f32) -> f32 {
-    let draw = rng.uniform();
-    if draw < zero {
-        0.0
-    } else if draw < zero + one {
-        1.0
-    } else {
-        rng.uniform()
     }
 }

@@ -250,8 +250,7 @@ impl Command {
             // A player mostly turns by up to a quarter, and in a hurry by any angle.
             let anywhere = rng.chance(config.any_direction_share);
             *direction = match self.facing {
-                // Keys and thumbs mostly go ahead, aside or back.
-                Some(_) if !anywhere => QUARTER * rng.index(4) as f32,
+                Some(_) => facing::way_to_go(config.strafe.unwrap_or_default().max_angle, anywhere, rng),
                 _ if anywhere => rng.angle(),
                 _ => *direction + rng.range(-1.0, 1.0) * QUARTER,
             };

@@ -40,6 +40,7 @@ const RANGES: &[(&str, f64, f64)] = &[
     ("environment.command.strafe.back", 0.05, 2.0),
     ("environment.command.strafe.turn_rate", 0.0, 20.0),
     ("environment.command.strafe.max_facing_error", 0.1, 3.2),
+    ("environment.command.strafe.max_angle", 0.0, 3.2),
     ("environment.reward.task_weight", 0.0, 1.0),
     ("environment.reward.speed_scale_mps", 0.01, 20.0),
     ("environment.reward.turning_style_factor", 0.0, 1.0),

@@ -63,6 +63,9 @@ pub struct StrafeConfig {
     /// An episode fails where it faces further from its way than this, radians; with pi never. A policy that turns to its target
     /// by habit otherwise hardly meets what it is to learn.
     pub max_facing_error: f32,
+    /// Largest angle between the way to face and the way to go, radians; pi for any. Phases that widen it by and by lead a walk to
+    /// steps aside and backwards.
+    pub max_angle: f32,
 }
 
 impl Default for StrafeConfig {
@@ -74,6 +77,7 @@ impl Default for StrafeConfig {
             back: 0.7,
             turn_rate: [0.5, 3.5],
             max_facing_error: PI,
+            max_angle: PI,
         }
     }
 }

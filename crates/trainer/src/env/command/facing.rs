@@ -46,6 +46,12 @@ impl Facing {
     }
 }
 
+/// An angle from the way to face to go along, at most so far from it, radians. Keys and thumbs mostly go ahead, aside or back.
+pub(super) fn way_to_go(most: f32, anywhere: bool, rng: &mut Rng) -> f32 {
+    let angle = if anywhere { rng.angle() } else { QUARTER * (rng.index(4) as f32 - 1.0) };
+    Heading::from_angle(angle).angle().clamp(-most, most)
+}
+
 impl Command {
     /// The way to face, world; `None` where it faces its target.
     #[must_use]

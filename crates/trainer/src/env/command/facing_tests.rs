@@ -13,6 +13,7 @@ const STRAFE: StrafeConfig = StrafeConfig {
     back: 0.8,
     turn_rate: [0.5, 3.5],
     max_facing_error: 1.0,
+    max_angle: std::f32::consts::PI,
 };
 
 /// A path from a walk to a gait that strafes, both of 1 m/s.
@@ -105,4 +106,22 @@ fn an_episode_fails_where_it_faces_far_from_its_way() {
         held(&graph, coordinate, 1.0, 0.0).faces_elsewhere(&graph, Heading::from_angle(heading))
     };
     assert!(fails(1.0, -0.1) && fails(0.6, 2.1) && !fails(1.0, 0.1) && !fails(0.4, 3.0));
+}
+
+#[test]
+fn ways_to_go_stay_within_the_largest_angle() {
+    let mut rng = Rng::new(7, 0);
+    for most in [0.5, 2.0, std::f32::consts::PI] {
+        for anywhere in [false, true] {
+            let angles: Vec<f32> = (0..400).map(|_| way_to_go(most, anywhere, &mut rng)).collect();
+            assert!(angles.iter().all(|angle| angle.abs() <= most), "{most}");
+            let widest = angles.iter().fold([0.0f32; 2], |[low, high], &a| [low.min(a), high.max(a)]);
+            assert!(
+                widest[0] < -0.9 * most.min(QUARTER) && widest[1] > 0.9 * most.min(QUARTER),
+                "{widest:?}"
+            );
+        }
+    }
+    let back = (0..100).any(|_| way_to_go(std::f32::consts::PI, false, &mut rng).abs() > 3.1);
+    assert!(back, "straight back is among the ways");
 }
