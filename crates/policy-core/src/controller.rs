@@ -24,7 +24,7 @@ use crate::scorer::Scorer;
 use crate::skill::SkillEnd;
 use crate::state::{CharacterState, JointTargets};
 use crate::steering::SteeringState;
-use crate::strafe::{face_in_observation, strafing_share};
+use crate::strafe::{face_in_observation, strafing_share, waits_before_leaving};
 use crate::variants::{Shares, with_variants};
 
 mod config;
@@ -235,7 +235,8 @@ impl Controller {
         let command = assist.map_or(*command, |a| a.adjusted(self.pack.graph(), state, command));
         let command = self.giving_way(state, &command, dt);
         let command = self.settling(state, &command);
-        self.travel(&command, heights, dt);
+        let (command, goal) = self.bound_for(state, &command);
+        self.travel(goal, heights, dt);
         self.state.urgency = match self.config.agility {
             true if self.state.settle_secs > 0.0 => Urgency::default(),
             true => {
@@ -276,14 +277,9 @@ impl Controller {
         (report.position, report.goal, report.blend) = (position, position, position.blend());
     }
 
-    /// Moves along the graph: to the nearest node that a pending skill may start from, else to the command's goal. Leaving a
-    /// low gait requires standing first.
-    fn travel(&mut self, command: &Command, heights: Heights, dt: f32) {
-        if self.state.report.skill.is_some() {
-            return;
-        }
-        let graph = self.pack.graph();
-        let report = &mut self.state.report;
+    /// Where on the graph to go: to the nearest node that a pending skill may start from, else to the command's goal.
+    fn goal(&self, command: &Command) -> GraphPosition {
+        let (graph, report) = (self.pack.graph(), &self.state.report);
         let goal = match report.pending_skill.map(|s| &self.pack.skills()[s.index()].entry) {
             Some(entry) => {
                 let from = report.position.nearest_node();
@@ -293,7 +289,26 @@ impl Controller {
             }
             None => command.goal.position(graph),
         };
-        report.goal = graph.settled(goal.unwrap_or(report.position), report.position);
+        graph.settled(goal.unwrap_or(report.position), report.position)
+    }
+
+    /// Where on the graph to go, and the command; a character that is to leave a policy that strafes stays, and turns to its target first.
+    fn bound_for(&self, state: &CharacterState, command: &Command) -> (Command, GraphPosition) {
+        let (position, goal) = (self.state.report.position, self.goal(command));
+        match waits_before_leaving(self.pack.graph(), [position, goal], state, command.target) {
+            Some(way) => (Command { facing: Some(way), ..*command }, position),
+            None => (*command, goal),
+        }
+    }
+
+    /// Moves along the graph towards a goal. Leaving a low gait requires standing first.
+    fn travel(&mut self, goal: GraphPosition, heights: Heights, dt: f32) {
+        if self.state.report.skill.is_some() {
+            return;
+        }
+        let graph = self.pack.graph();
+        let report = &mut self.state.report;
+        report.goal = goal;
         let mut next = report.position;
         graph.travel(&mut next, report.goal, dt);
         let limits = step_heights(graph, [report.position, next]);

@@ -10,11 +10,41 @@ use crate::blend::Blend;
 use crate::graph::PolicyGraph;
 use crate::heading::Heading;
 use crate::observation::root_axis_at;
+use crate::path::GraphPosition;
 use crate::skeleton::Skeleton;
 use crate::state::CharacterState;
 
 /// Largest angle that a policy sees left to turn, radians. Further turns are seen as this one.
 const MOST_RADIANS: f32 = 0.5;
+
+/// A character that strafes leaves for a gait that faces its target once it faces it within this, radians, ...
+const LEAVES_RADIANS: f32 = 0.4;
+
+/// ... and goes there at this speed, metres per second; without a target, once it is slower than this.
+const LEAVES_MPS: f32 = 0.3;
+
+/// The way to face, world, of a character that strafes at `position` on the graph and is to leave for `goal`, where no policy goes
+/// backwards or aside: its target's, which it turns to and walks along first, or where it looks, until it stands. `None` when it
+/// may leave.
+pub(crate) fn waits_before_leaving(
+    graph: &PolicyGraph,
+    [position, goal]: [GraphPosition; 2],
+    state: &CharacterState,
+    target: Option<Vec2>,
+) -> Option<Vec2> {
+    let strafes = |position: GraphPosition| graph.node(position.nearest_node()).strafes;
+    if !strafes(position) || strafes(goal) {
+        return None;
+    }
+    let root = state.root();
+    let (heading, velocity) = (Heading::from_rotation(root.rotation), root.linear_velocity.truncate());
+    let way = target.map_or(Vec2::ZERO, |target| target - root.position.truncate());
+    let Some(direction) = way.try_normalize() else {
+        return (velocity.length() > LEAVES_MPS).then_some(heading.direction());
+    };
+    let ready = heading.angle_off(way) < LEAVES_RADIANS && velocity.dot(direction) > LEAVES_MPS;
+    (!ready).then_some(direction)
+}
 
 /// Share of strafing policies in a blend, in [0, 1]: the mean of their blend weights over the layers.
 #[must_use]

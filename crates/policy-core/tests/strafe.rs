@@ -116,3 +116,31 @@ fn its_button_makes_the_character_face_where_the_camera_looks() {
     assert_eq!(facing(&short, None), None);
     assert_eq!(facing(&pack, Some(Button::RightStick)), None);
 }
+
+/// Where a controller that strafes is on the graph after it is asked to walk for a tick, and the sine of what its policy has left to turn.
+fn asked_to_walk(velocity: Vec2, target: Option<Vec2>) -> (f32, f32) {
+    let mut controller = at("crouch");
+    let walk = controller.pack().graph().node_named("walk").unwrap();
+    let mut state = standing();
+    state.bodies.iter_mut().for_each(|body| body.linear_velocity = velocity.extend(0.0));
+    let asked = Command { target, goal: Goal::Node(walk), ..Command::default() };
+    controller.tick(&state, &asked, DT);
+    let left = controller.policy_input()[44] - {
+        let mut ahead = at("crouch");
+        ahead.tick(&state, &Command { facing: Some(Vec2::X), ..Command::default() }, DT);
+        ahead.policy_input()[44]
+    };
+    (strafing_share(controller.pack().graph(), &controller.report().position.blend()), left)
+}
+
+#[test]
+fn it_turns_to_its_target_and_goes_there_before_it_leaves_for_a_walk() {
+    let (behind, ahead) = (Some(Vec2::new(-5.0, 1.0)), Some(Vec2::new(5.0, 0.5)));
+    let (weight, left) = asked_to_walk(Vec2::X * -0.5, behind);
+    assert_eq!(weight, 1.0, "it stays");
+    assert!(left.abs() > 0.1, "and turns, {left}");
+    assert_eq!(asked_to_walk(Vec2::X * -0.5, ahead).0, 1.0, "it still goes backwards");
+    assert!(asked_to_walk(Vec2::X * 0.5, ahead).0 < 1.0);
+    assert_eq!(asked_to_walk(Vec2::X * -0.5, None), (1.0, 0.0), "it comes to rest first");
+    assert!(asked_to_walk(Vec2::ZERO, None).0 < 1.0);
+}

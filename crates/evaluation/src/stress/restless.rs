@@ -31,11 +31,7 @@ impl StrafeHand {
     /// Without a strafing path in the pack it does nothing.
     fn new(bindings: &Bindings, pack: &CharacterPack, rng: Rng) -> Self {
         let strafes = pack.graph().path_named("strafe").is_some();
-        let button = bindings.paths.iter().find_map(|binding| match binding.control {
-            Control::Button(button) if binding.path == "strafe" => Some(button),
-            _ => None,
-        });
-        let button = button.filter(|_| strafes);
+        let button = button_of(bindings, "strafe").filter(|_| strafes);
         Self { button, rng, change_in: 2.0, turn_rate: 0.0 }
     }
 
@@ -60,10 +56,7 @@ impl Player {
     pub(super) fn new(kind: PadKind, pack: &CharacterPack, seed: u64) -> Self {
         let (bindings, rng) = (Bindings::default(), Rng::new(seed, 41));
         let skills = bindings.skills.iter().map(|(button, _)| *button).collect();
-        let style = bindings.paths.iter().find_map(|binding| match binding.control {
-            Control::Button(button) => Some(button),
-            _ => None,
-        });
+        let style = button_of(&bindings, "style");
         // A hand of its own, so that the other kinds do what they do without it.
         let strafe = StrafeHand::new(&bindings, pack, Rng::new(seed, 47));
         Self { kind, rng, skills, style, change_in: [1.0, 2.0, 2.0, 2.0, 3.0], strafe }
@@ -118,5 +111,26 @@ fn mostly_ends(rng: &mut Rng, zero: f32, one: f32) -> f32 {
         1.0
     } else {
         rng.uniform()
+    }
+}
+
+/// The button that a path is bound to.
+fn button_of(bindings: &Bindings, path: &str) -> Option<Button> {
+    bindings.paths.iter().find_map(|binding| match binding.control {
+        Control::Button(button) if binding.path == path => Some(button),
+        _ => None,
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn each_path_has_its_own_button() {
+        let button = |path| button_of(&Bindings::default(), path);
+        assert_eq!(button("style"), Some(Button::RightShoulder));
+        assert_eq!(button("strafe"), Some(Button::RightStick));
+        assert_eq!(button("stance"), None, "a trigger's");
     }
 }
