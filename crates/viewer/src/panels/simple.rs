@@ -11,6 +11,8 @@ use crate::sim::SHOVE_BUTTON;
 const BAR_HEIGHT: f32 = 20.0;
 /// Least width of a part that is named, points.
 const NAMED_WIDTH: f32 = 64.0;
+/// A narrower row of keys has smaller gaps, points.
+const NARROW: f32 = 700.0;
 /// A control that is pressed less is at rest.
 const REST: f32 = 0.05;
 
@@ -22,8 +24,13 @@ pub(super) fn show(ui: &mut Ui, app: &App) {
             blend_bar(ui, app);
         });
         ui.horizontal_wrapped(|ui| {
+            // In a small window a third row would leave too little of the view.
+            let gap = if ui.available_width() < NARROW { 0.0 } else { 6.0 };
+            if gap == 0.0 {
+                ui.spacing_mut().item_spacing.x = 4.0;
+            }
             for cap in caps(app) {
-                draw_cap(ui, &cap);
+                draw_cap(ui, &cap, gap);
             }
             ui.weak(if app.clock.paused { "paused" } else { app.refused().unwrap_or_default() });
         });
@@ -147,7 +154,7 @@ fn stick(input: &GamepadState) -> f32 {
     input.left_stick[0].hypot(input.left_stick[1])
 }
 
-fn draw_cap(ui: &mut Ui, cap: &Cap) {
+fn draw_cap(ui: &mut Ui, cap: &Cap, gap: f32) {
     let (fill, text) = match cap.pressed {
         true => (PRESENT, Color32::BLACK),
         false => (Color32::from_gray(52), Color32::WHITE),
@@ -160,5 +167,5 @@ fn draw_cap(ui: &mut Ui, cap: &Cap) {
     let key = shape.show(ui, |ui| ui.label(RichText::new(&cap.key).color(text))).response;
     key.on_hover_text(cap.told);
     ui.label(cap.action).on_hover_text(cap.told);
-    ui.add_space(6.0);
+    ui.add_space(gap);
 }
