@@ -357,8 +357,8 @@ impl Controller {
         }
     }
 
-    /// The target that the policy is to see. Without one there is no course to hold, and the target of a skill, or of a character
-    /// that strafes, stays as it is.
+    /// The target that the policy is to see. Without one there is no course to hold, and the target of a skill stays as it is. A
+    /// character that strafes gets the trim alone.
     fn steered(
         &mut self,
         state: &CharacterState,
@@ -366,13 +366,16 @@ impl Controller {
         strafing: f32,
         dt: f32,
     ) -> Option<Vec2> {
-        let steers = self.state.report.skill.is_none() && strafing == 0.0;
-        let steering = self.config.steering.filter(|_| steers);
+        let steering = self.config.steering.filter(|_| self.state.report.skill.is_none());
         let (Some(steering), Some(target)) = (steering, target) else {
             self.state.steering = SteeringState::default();
             return target;
         };
-        Some(steering.adjusted(&mut self.state.steering, state, target, dt))
+        let memory = &mut self.state.steering;
+        Some(match strafing > 0.0 {
+            true => steering.trimmed(memory, state, target, dt),
+            false => steering.adjusted(memory, state, target, dt),
+        })
     }
 
     fn observe(&mut self, state: &CharacterState, command: &Command, dt: f32) {

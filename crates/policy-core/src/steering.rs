@@ -68,9 +68,7 @@ impl Steering {
     #[must_use]
     pub fn adjusted(self, memory: &mut SteeringState, state: &CharacterState, target: Vec2, dt: f32) -> Vec2 {
         let root = state.root();
-        let now = root.linear_velocity.truncate();
-        let share = if self.velocity_secs > 0.0 { (dt / self.velocity_secs).min(1.0) } else { 1.0 };
-        memory.velocity += (now - memory.velocity) * share;
+        memory.follow(self.velocity_secs, state, dt);
         let to_target = target - root.position.truncate();
         let distance = libm::sqrtf(to_target.length_squared());
         if !(distance.is_finite() && distance > 1e-3) {
@@ -78,15 +76,11 @@ impl Steering {
         }
         let wanted = Heading::from_direction(to_target).angle();
         let off_heading = wrapped(wanted - Heading::from_rotation(root.rotation).angle());
-        let speed = libm::sqrtf(memory.velocity.length_squared());
-        let off_course = wrapped(wanted - Heading::from_direction(memory.velocity).angle());
-        let moving = ((speed - LEAST_SPEED) / (FULL_SPEED - LEAST_SPEED)).clamp(0.0, 1.0);
+        let (off_course, moving) = memory.off_course(wanted);
         // Facing away, what counts is the side to turn to, not where the momentum of the old direction still leads.
         let error = if libm::fabsf(off_heading) > DRIFT_RADIANS { off_heading } else { moving * off_course };
         if libm::fabsf(off_heading) < DRIFT_RADIANS && libm::fabsf(off_course) < DRIFT_RADIANS {
-            let limit = self.trim_limit_radians;
-            let trim = memory.trim + moving * off_course * self.trim_per_second * dt;
-            memory.trim = if trim.is_finite() { trim.max(-limit).min(limit) } else { 0.0 };
+            self.trim(memory, moving * off_course, dt);
         }
         let largest = libm::fabsf(off_heading).max(LARGEST_RADIANS);
         let asked = if libm::fabsf(off_heading) > BEHIND_RADIANS {
@@ -103,6 +97,48 @@ impl Steering {
         };
         let turned = Heading::from_angle(asked - off_heading);
         root.position.truncate() + turned.world_from_heading_2d(to_target)
+    }
+
+    /// The target of a character that strafes, turned about the root by the trim alone: where it looks says nothing about where it goes.
+    /// A new way to go begins without a trim.
+    #[must_use]
+    pub fn trimmed(self, memory: &mut SteeringState, state: &CharacterState, target: Vec2, dt: f32) -> Vec2 {
+        let root = state.root().position.truncate();
+        memory.follow(self.velocity_secs, state, dt);
+        memory.side = 0.0;
+        let to_target = target - root;
+        if !(to_target.is_finite() && to_target.length_squared() > 1e-6) {
+            return target;
+        }
+        let (off_course, moving) = memory.off_course(Heading::from_direction(to_target).angle());
+        if libm::fabsf(off_course) < DRIFT_RADIANS {
+            self.trim(memory, moving * off_course, dt);
+        } else {
+            memory.trim = 0.0;
+        }
+        root + Heading::from_angle(memory.trim).world_from_heading_2d(to_target)
+    }
+
+    /// Lets the trim grow by an error, radians.
+    fn trim(self, memory: &mut SteeringState, error: f32, dt: f32) {
+        let limit = self.trim_limit_radians;
+        let trim = memory.trim + error * self.trim_per_second * dt;
+        memory.trim = if trim.is_finite() { trim.max(-limit).min(limit) } else { 0.0 };
+    }
+}
+
+impl SteeringState {
+    /// Follows the velocity of the root with a time constant.
+    fn follow(&mut self, secs: f32, state: &CharacterState, dt: f32) {
+        let share = if secs > 0.0 { (dt / secs).min(1.0) } else { 1.0 };
+        self.velocity += (state.root().linear_velocity.truncate() - self.velocity) * share;
+    }
+
+    /// Angle from the course to the direction that is wanted, and how much the course counts, in [0, 1].
+    fn off_course(&self, wanted: f32) -> (f32, f32) {
+        let speed = libm::sqrtf(self.velocity.length_squared());
+        let moving = ((speed - LEAST_SPEED) / (FULL_SPEED - LEAST_SPEED)).clamp(0.0, 1.0);
+        (wrapped(wanted - Heading::from_direction(self.velocity).angle()), moving)
     }
 }
 

@@ -144,3 +144,25 @@ fn it_turns_to_its_target_and_goes_there_before_it_leaves_for_a_walk() {
     assert_eq!(asked_to_walk(Vec2::X * -0.5, None), (1.0, 0.0), "it comes to rest first");
     assert!(asked_to_walk(Vec2::ZERO, None).0 < 1.0);
 }
+
+#[test]
+fn it_is_trimmed_to_the_way_it_is_told_to_go_and_a_new_way_begins_anew() {
+    let mut controller = at("crouch");
+    let mut state = standing();
+    // Told to go to the left, it goes to the left and a little ahead; it faces ahead all along.
+    state.bodies.iter_mut().for_each(|body| body.linear_velocity = Vec2::new(0.1, 0.4).extend(0.0));
+    let mut shown = |target: Vec2, ticks: usize| {
+        let asked = Command { target: Some(target), facing: Some(Vec2::X), ..Command::default() };
+        (0..ticks).for_each(|_| {
+            controller.tick(&state, &asked, DT);
+        });
+        let [x, y] = controller.report().target;
+        y.atan2(x)
+    };
+    let left = Vec2::new(0.0, 5.0);
+    let quarter = std::f32::consts::FRAC_PI_2;
+    assert!((shown(left, 1) - quarter).abs() < 0.05);
+    let trimmed = shown(left, 60);
+    assert!(trimmed > quarter + 0.2, "asked to go back a little, {trimmed}");
+    assert!((shown(Vec2::new(0.0, -5.0), 1) + quarter).abs() < 0.05);
+}
