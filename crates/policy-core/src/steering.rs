@@ -69,11 +69,7 @@ impl Steering {
     pub fn adjusted(self, memory: &mut SteeringState, state: &CharacterState, target: Vec2, dt: f32) -> Vec2 {
         let root = state.root();
         memory.follow(self.velocity_secs, state, dt);
-        let to_target = target - root.position.truncate();
-        let distance = libm::sqrtf(to_target.length_squared());
-        if !(distance.is_finite() && distance > 1e-3) {
-            return target;
-        }
+        let Some(to_target) = way_to(target, state) else { return target };
         let wanted = Heading::from_direction(to_target).angle();
         let off_heading = wrapped(wanted - Heading::from_rotation(root.rotation).angle());
         let (off_course, moving) = memory.off_course(wanted);
@@ -103,20 +99,17 @@ impl Steering {
     /// A new way to go begins without a trim.
     #[must_use]
     pub fn trimmed(self, memory: &mut SteeringState, state: &CharacterState, target: Vec2, dt: f32) -> Vec2 {
-        let root = state.root().position.truncate();
         memory.follow(self.velocity_secs, state, dt);
         memory.side = 0.0;
-        let to_target = target - root;
-        if !(to_target.is_finite() && to_target.length_squared() > 1e-6) {
-            return target;
-        }
+        let Some(to_target) = way_to(target, state) else { return target };
         let (off_course, moving) = memory.off_course(Heading::from_direction(to_target).angle());
         if libm::fabsf(off_course) < DRIFT_RADIANS {
             self.trim(memory, moving * off_course, dt);
         } else {
             memory.trim = 0.0;
         }
-        root + Heading::from_angle(memory.trim).world_from_heading_2d(to_target)
+        let turned = Heading::from_angle(memory.trim);
+        state.root().position.truncate() + turned.world_from_heading_2d(to_target)
     }
 
     /// Lets the trim grow by an error, radians.
@@ -140,6 +133,13 @@ impl SteeringState {
         let moving = ((speed - LEAST_SPEED) / (FULL_SPEED - LEAST_SPEED)).clamp(0.0, 1.0);
         (wrapped(wanted - Heading::from_direction(self.velocity).angle()), moving)
     }
+}
+
+/// From the root to a target; nothing for one that is not finite or where the character stands.
+fn way_to(target: Vec2, state: &CharacterState) -> Option<Vec2> {
+    let way = target - state.root().position.truncate();
+    let distance = libm::sqrtf(way.length_squared());
+    (distance.is_finite() && distance > 1e-3).then_some(way)
 }
 
 /// The side of a turn of which this is the target that the policy saw: a target that lies behind is shown at one angle exactly.

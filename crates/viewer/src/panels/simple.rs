@@ -25,8 +25,9 @@ pub(super) fn show(ui: &mut Ui, app: &App) {
         });
         ui.horizontal_wrapped(|ui| {
             // In a small window a third row would leave too little of the view.
-            let gap = if ui.available_width() < NARROW { 0.0 } else { 6.0 };
-            if gap == 0.0 {
+            let narrow = ui.available_width() < NARROW;
+            let gap = if narrow { 0.0 } else { 6.0 };
+            if narrow {
                 ui.spacing_mut().item_spacing.x = 4.0;
             }
             for cap in caps(app) {
