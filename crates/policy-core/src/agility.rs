@@ -1,7 +1,9 @@
-//! Agility: while a character does not move yet as it is asked to, a gait is blended with its agile variant.
+//! Agility: while a character does not move yet as it is asked to, a gait is blended with its agile variant; a stand that has come to rest
+//! is blended with its variant for rest.
 //!
 //! A gait that turns, starts or stops quickly looks hurried while it walks straight ahead. So the variant acts in the moments in which
-//! it is needed, and the gait acts alone, with the bits that it has without a variant, once the character goes as it is asked to.
+//! it is needed, and the gait acts alone, with the bits that it has without a variant, once the character goes as it is asked to. A stand
+//! that is ready to brake and to set off leans and shuffles. Once nothing is asked of it, its variant for rest stands upright and still.
 
 use glam::Vec2;
 
@@ -27,6 +29,9 @@ pub const BRAKING_METRES: f32 = 1.0;
 /// Time from a gait to its variant, and back, seconds.
 const CROSS_SECS: [f32; 2] = [0.1, 0.3];
 
+/// Time from a stand to its variant for rest, and back, seconds.
+const REST_SECS: [f32; 2] = [1.0, 0.1];
+
 /// How far a character is from what it is asked to do, each in [0, 1].
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct Urgency {
@@ -34,6 +39,8 @@ pub(crate) struct Urgency {
     pub(crate) to_move: f32,
     /// From standing, while it has no target: for the variants of gaits that stand.
     pub(crate) to_stand: f32,
+    /// How far it has come to rest where it stands: for the variants for rest.
+    pub(crate) at_rest: f32,
 }
 
 impl Urgency {
@@ -55,14 +62,26 @@ impl Urgency {
             (None, _) => {
                 let moves = off_velocity(state.root().linear_velocity.truncate(), 0.0);
                 let stays = moving_mps(graph, goal).is_some();
-                Self { to_stand: moves, to_move: if stays { moves } else { 0.0 } }
+                let rests = goal == position && graph.stands(position);
+                Self {
+                    to_stand: moves,
+                    to_move: if stays { moves } else { 0.0 },
+                    at_rest: if rests { 1.0 - moves } else { 0.0 },
+                }
             }
-            (Some(target), Some(speed)) => Self { to_move: off_course(state, target, speed), to_stand: 0.0 },
+            (Some(target), Some(speed)) => {
+                Self { to_move: off_course(state, target, speed), ..Self::default() }
+            }
             (Some(_), None) => Self::default(),
         };
-        let follow =
-            |before: f32, now: f32| crossed(before, if now.is_finite() { now } else { 0.0 }, CROSS_SECS, dt);
-        Self { to_move: follow(self.to_move, now.to_move), to_stand: follow(self.to_stand, now.to_stand) }
+        let follow = |before: f32, now: f32, secs: [f32; 2]| {
+            crossed(before, if now.is_finite() { now } else { 0.0 }, secs, dt)
+        };
+        Self {
+            to_move: follow(self.to_move, now.to_move, CROSS_SECS),
+            to_stand: follow(self.to_stand, now.to_stand, CROSS_SECS),
+            at_rest: follow(self.at_rest, now.at_rest, REST_SECS),
+        }
     }
 }
 

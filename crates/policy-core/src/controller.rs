@@ -4,18 +4,15 @@
 use alloc::sync::Arc;
 use alloc::vec::Vec;
 
-use glam::Vec2;
-
 use crate::action::ActionScaling;
 use crate::agility::Urgency;
 use crate::blend::Blend;
 use crate::command::Command;
 use crate::controller_state::{ControllerState, StateError};
 use crate::evaluator::{BlendEvaluator, BlendMode};
-use crate::fall::{Heights, step_heights};
+use crate::fall::Heights;
 use crate::footing::next_unevenness;
-use crate::give_way::GiveWayState;
-use crate::ids::{NodeId, PolicyId, SkillId};
+use crate::ids::{PolicyId, SkillId};
 use crate::observation::{observe_into, target_input};
 use crate::pack::CharacterPack;
 use crate::path::GraphPosition;
@@ -23,13 +20,13 @@ use crate::report::{StateFault, TickReport};
 use crate::scorer::Scorer;
 use crate::skill::SkillEnd;
 use crate::state::{CharacterState, JointTargets};
-use crate::steering::SteeringState;
-use crate::strafe::{face_in_observation, strafing_share, waits_before_leaving};
+use crate::strafe::{face_in_observation, strafing_share};
 use crate::variants::{Shares, with_variants};
 
 mod config;
 mod skills;
 mod swap;
+mod travel;
 
 pub use self::config::ControllerConfig;
 pub use self::swap::SwapError;
@@ -39,9 +36,6 @@ const LONGEST_TICK: f32 = 0.25;
 
 /// A tick this much longer or shorter than the control period, relative to it, is reported.
 const RATE_TOLERANCE: f32 = 0.25;
-
-/// Seconds that a character has to stand up by itself out of a low gait.
-const ASSIST_SECONDS: f32 = 0.1;
 
 /// No action is larger than this; policies stay within about 1.
 const ACTION_LIMIT: f32 = 10.0;
@@ -277,52 +271,6 @@ impl Controller {
         (report.position, report.goal, report.blend) = (position, position, position.blend());
     }
 
-    /// Where on the graph to go: to the nearest node that a pending skill may start from, else to the command's goal.
-    fn goal(&self, command: &Command) -> GraphPosition {
-        let (graph, report) = (self.pack.graph(), &self.state.report);
-        let goal = match report.pending_skill.map(|s| &self.pack.skills()[s.index()].entry) {
-            Some(entry) => {
-                let from = report.position.nearest_node();
-                let cost = |node: &&NodeId| graph.routes().cost(from, **node);
-                let nearest = entry.iter().min_by(|a, b| cost(a).total_cmp(&cost(b)));
-                nearest.map(|&node| GraphPosition::node(node))
-            }
-            None => command.goal.position(graph),
-        };
-        graph.settled(goal.unwrap_or(report.position), report.position)
-    }
-
-    /// Where on the graph to go, and the command; a character that is to leave a policy that strafes stays, and turns to its target first.
-    fn bound_for(&self, state: &CharacterState, command: &Command) -> (Command, GraphPosition) {
-        let (position, goal) = (self.state.report.position, self.goal(command));
-        match waits_before_leaving(self.pack.graph(), [position, goal], state, command.target) {
-            Some(way) => (Command { facing: Some(way), ..*command }, position),
-            None => (*command, goal),
-        }
-    }
-
-    /// Moves along the graph towards a goal. Leaving a low gait requires standing first.
-    fn travel(&mut self, goal: GraphPosition, heights: Heights, dt: f32) {
-        if self.state.report.skill.is_some() {
-            return;
-        }
-        let graph = self.pack.graph();
-        let report = &mut self.state.report;
-        report.goal = goal;
-        let mut next = report.position;
-        graph.travel(&mut next, report.goal, dt);
-        let limits = step_heights(graph, [report.position, next]);
-        if !self.state.fall.holds_back(limits, heights, dt) {
-            report.position = next;
-        } else if let (true, true, Some(recovery)) =
-            (self.config.assist_rise, self.state.fall.rising_seconds() > ASSIST_SECONDS, self.pack.recovery())
-        {
-            let rising = self.state.fall.rising_seconds;
-            self.start_skill(recovery);
-            self.state.fall.rising_seconds = rising;
-        }
-    }
-
     fn choose_blend(&mut self, state: &CharacterState, command: &Command) {
         let manual = command.blend.filter(|b| is_valid(b, self.pack.policies().len()));
         let report = &mut self.state.report;
@@ -339,43 +287,6 @@ impl Controller {
         if let (BlendMode::Switch, Some(policy)) = (self.config.blend_mode, report.blend.strongest()) {
             report.blend = Blend::single(policy);
         }
-    }
-
-    /// The command, or to stand for a moment. Skills and falls are none of its business.
-    fn giving_way(&mut self, state: &CharacterState, command: &Command, dt: f32) -> Command {
-        let report = &self.state.report;
-        let acts = report.skill.is_none() && report.pending_skill.is_none() && !report.fallen;
-        let memory = &mut self.state.give_way;
-        match self.config.give_way.filter(|_| acts) {
-            Some(give_way) => {
-                give_way.adjusted(memory, (self.pack.graph(), report.position), state, command, dt)
-            }
-            None => {
-                *memory = GiveWayState::default();
-                *command
-            }
-        }
-    }
-
-    /// The target that the policy is to see. Without one there is no course to hold, and the target of a skill stays as it is. A
-    /// character that strafes gets the trim alone.
-    fn steered(
-        &mut self,
-        state: &CharacterState,
-        target: Option<Vec2>,
-        strafing: f32,
-        dt: f32,
-    ) -> Option<Vec2> {
-        let steering = self.config.steering.filter(|_| self.state.report.skill.is_none());
-        let (Some(steering), Some(target)) = (steering, target) else {
-            self.state.steering = SteeringState::default();
-            return target;
-        };
-        let memory = &mut self.state.steering;
-        Some(match strafing > 0.0 {
-            true => steering.trimmed(memory, state, target, dt),
-            false => steering.adjusted(memory, state, target, dt),
-        })
     }
 
     fn observe(&mut self, state: &CharacterState, command: &Command, dt: f32) {

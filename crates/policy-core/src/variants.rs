@@ -1,5 +1,5 @@
-//! Variants: a policy gives shares of its weight to others that were trained on from it, one for rough ground and one that turns,
-//! starts or stops quickly.
+//! Variants: a policy gives shares of its weight to others that were trained on from it: one for rough ground, one that turns, starts
+//! or stops quickly, one that stands at rest.
 //!
 //! All are of one family, so the straight lines between their parameters are good policies too.
 
@@ -23,7 +23,8 @@ pub(crate) fn crossed(before: f32, now: f32, [to_all, to_nothing]: [f32; 2], dt:
 pub(crate) struct Shares {
     /// Share of the variant for rough ground.
     pub(crate) rough_ground: f32,
-    /// Share of the agile variant in what the one for rough ground leaves: of gaits that move, and of those that stand.
+    /// Share of the agile variant in what the one for rough ground leaves: of gaits that move, and of those that stand. The variant for
+    /// rest has a share of what both leave.
     pub(crate) agile: Urgency,
 }
 
@@ -43,8 +44,10 @@ pub(crate) fn with_variants(graph: &PolicyGraph, blend: Blend, shares: Shares) -
         let stands = node.is_some_and(|node| node.speed_mps == Some(0.0));
         let urgency = if stands { shares.agile.to_stand } else { shares.agile.to_move };
         let agile = variant(|node| node.agile, left * urgency);
-        let own = left - agile.map_or(0.0, |(_, share)| share);
-        let parts = [Some((term.policy, own)), rough, agile];
+        let left = left - agile.map_or(0.0, |(_, share)| share);
+        let at_rest = variant(|node| node.at_rest, left * shares.agile.at_rest);
+        let own = left - at_rest.map_or(0.0, |(_, share)| share);
+        let parts = [Some((term.policy, own)), rough, agile, at_rest];
         for (policy, share) in parts.into_iter().flatten().filter(|(_, share)| *share > 0.0) {
             let weights = term.weights.map(|weight| share * weight);
             if shared.push(BlendTerm { policy, weights }).is_err() {

@@ -136,6 +136,28 @@ fn a_gait_that_it_is_to_stay_in_comes_to_rest_by_its_variant() {
 }
 
 #[test]
+fn a_stand_that_has_come_to_rest_is_left_to_its_variant_until_anything_is_asked() {
+    let roll = policy("roll");
+    let mut stands = Controller::new(changed_pack(false, |manifest| {
+        manifest.policies[0].at_rest = Some("roll".into());
+        manifest.policies[1].agile = None;
+    }));
+    let mut rest = |state: &CharacterState, command: &Command, ticks: usize| {
+        (0..ticks).for_each(|_| {
+            stands.tick(state, command, DT);
+        });
+        weight(&acted(&stands), roll)
+    };
+    let (still, nothing) = (walking(0.0), Command::default());
+    assert!((rest(&still, &nothing, 3) - 0.1).abs() < 1e-5, "a second to cross");
+    assert_eq!(rest(&still, &nothing, 30), 1.0);
+    assert!((rest(&walking(0.6), &nothing, 1) - 2.0 / 3.0).abs() < 1e-5, "a push");
+    assert_eq!(rest(&walking(0.6), &nothing, 2), 0.0);
+    assert_eq!(rest(&still, &nothing, 31), 1.0);
+    assert_eq!(rest(&still, &towards(10.0 * Vec2::X), 3), 0.0, "it is to walk");
+}
+
+#[test]
 fn on_the_way_up_an_edge_that_is_only_crossed_gaits_act_alone() {
     let agile_share_half_way = |transit: bool| {
         let pack = changed_pack(false, |manifest| {
@@ -212,8 +234,14 @@ fn a_state_saved_in_a_turn_goes_on_with_the_same_blend() {
 fn an_unknown_variant_is_refused_by_name() {
     let mut manifest = common::manifest();
     manifest.policies[1].agile = Some("dancer".into());
-    let error = CharacterPack::from_parts(manifest, common::tensors(0.0)).unwrap_err().to_string();
-    assert!(error.contains("dancer") && error.contains("policy"), "{error}");
+    let refused = |manifest| {
+        let error = CharacterPack::from_parts(manifest, common::tensors(0.0)).unwrap_err().to_string();
+        assert!(error.contains("dancer") && error.contains("policy"), "{error}");
+    };
+    refused(manifest);
+    let mut manifest = common::manifest();
+    manifest.policies[0].at_rest = Some("dancer".into());
+    refused(manifest);
 }
 
 #[test]
