@@ -62,7 +62,7 @@ impl Urgency {
             (None, _) => {
                 let moves = off_velocity(state.root().linear_velocity.truncate(), 0.0);
                 let stays = moving_mps(graph, goal).is_some();
-                let rests = goal == position && graph.stands(position);
+                let rests = graph.stands(position) && goal.as_node() == position.as_node();
                 Self {
                     to_stand: moves,
                     to_move: if stays { moves } else { 0.0 },

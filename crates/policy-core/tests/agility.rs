@@ -148,7 +148,8 @@ fn a_stand_that_has_come_to_rest_is_left_to_its_variant_until_anything_is_asked(
         });
         weight(&acted(&stands), roll)
     };
-    let (still, nothing) = (walking(0.0), Command::default());
+    let goal = Goal::Path { path: PathId::new(0), coordinate: 0.0 };
+    let (still, nothing) = (walking(0.0), Command { goal, ..Command::default() });
     assert!((rest(&still, &nothing, 3) - 0.1).abs() < 1e-5, "a second to cross");
     assert_eq!(rest(&still, &nothing, 30), 1.0);
     assert!((rest(&walking(0.6), &nothing, 1) - 2.0 / 3.0).abs() < 1e-5, "a push");
