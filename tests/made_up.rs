@@ -30,7 +30,7 @@ pub fn pack(model: &Model, mjcf: &str) -> CharacterPack {
         strafes: false,
         rough_ground: None,
         agile: None,
-        at_rest: None,
+        steady: None,
         origin: "made up".into(),
     };
     let end = EndEntry {

@@ -58,7 +58,7 @@ fn pack(falls: bool) -> Arc<CharacterPack> {
         strafes: false,
         rough_ground: None,
         agile: None,
-        at_rest: None,
+        steady: None,
         origin: "made up".into(),
     };
     let edge = |a: &str, b: &str| EdgeEntry {

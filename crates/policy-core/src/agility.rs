@@ -1,9 +1,10 @@
-//! Agility: while a character does not move yet as it is asked to, a gait is blended with its agile variant; a stand that has come to rest
-//! is blended with its variant for rest.
+//! Agility: while a character does not move yet as it is asked to, a gait is blended with its agile variant; once it has
+//! done as it is asked to for a while, with its steady variant.
 //!
 //! A gait that turns, starts or stops quickly looks hurried while it walks straight ahead. So the variant acts in the moments in which
-//! it is needed, and the gait acts alone, with the bits that it has without a variant, once the character goes as it is asked to. A stand
-//! that is ready to brake and to set off leans and shuffles. Once nothing is asked of it, its variant for rest stands upright and still.
+//! it is needed, and the gait acts alone, with the bits that it has without a variant, once the character goes as it is asked to. A gait that is
+//! ready for anything does not look at ease either: a stand that can brake and set off leans and shuffles, a run that can turn lets its feet
+//! slide. Its steady variant stands upright and still, or goes straight, and does nothing else well.
 
 use glam::Vec2;
 
@@ -29,8 +30,11 @@ pub const BRAKING_METRES: f32 = 1.0;
 /// Time from a gait to its variant, and back, seconds.
 const CROSS_SECS: [f32; 2] = [0.1, 0.3];
 
-/// Time from a stand to its variant for rest, and back, seconds.
-const REST_SECS: [f32; 2] = [1.0, 0.1];
+/// Time in which a character becomes steady, and in which that is over, seconds.
+const STEADY_SECS: [f32; 2] = [1.6, 0.15];
+
+/// From where to where on the way to steadiness the steady variant comes in. First the gait itself brakes or gathers speed.
+const COMES_IN: [f32; 2] = [0.35, 1.0];
 
 /// How far a character is from what it is asked to do, each in [0, 1].
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -39,8 +43,15 @@ pub(crate) struct Urgency {
     pub(crate) to_move: f32,
     /// From standing, while it has no target: for the variants of gaits that stand.
     pub(crate) to_stand: f32,
-    /// How far it has come to rest where it stands: for the variants for rest.
+    /// How long it has stood still, 1 from 1.6 s on: see [`steady_share`].
     pub(crate) at_rest: f32,
+    /// How long it has gone as it is asked to, in the same measure.
+    pub(crate) on_course: f32,
+}
+
+/// Share of the steady variants after so long.
+pub(crate) fn steady_share(steadiness: f32) -> f32 {
+    within(steadiness, COMES_IN)
 }
 
 impl Urgency {
@@ -57,20 +68,23 @@ impl Urgency {
     ) -> Self {
         let crosses = graph.edge_at(position).is_some_and(|edge| edge.transit)
             && fall_height(graph, goal) > fall_height(graph, position);
+        let arrived = position == goal || position.as_node().is_some_and(|node| Some(node) == goal.as_node());
+        let steady = |can_be: bool, off: f32| if arrived && can_be { 1.0 - off } else { 0.0 };
         let now = match (target, moving_mps(graph, position)) {
             _ if crosses => Self::default(),
             (None, _) => {
                 let moves = off_velocity(state.root().linear_velocity.truncate(), 0.0);
                 let stays = moving_mps(graph, goal).is_some();
-                let rests = graph.stands(position) && goal.as_node() == position.as_node();
                 Self {
                     to_stand: moves,
                     to_move: if stays { moves } else { 0.0 },
-                    at_rest: if rests { 1.0 - moves } else { 0.0 },
+                    at_rest: steady(graph.stands(position), moves),
+                    on_course: 0.0,
                 }
             }
             (Some(target), Some(speed)) => {
-                Self { to_move: off_course(state, target, speed), ..Self::default() }
+                let off = off_course(state, target, speed);
+                Self { to_move: off, on_course: steady(true, off), ..Self::default() }
             }
             (Some(_), None) => Self::default(),
         };
@@ -80,7 +94,8 @@ impl Urgency {
         Self {
             to_move: follow(self.to_move, now.to_move, CROSS_SECS),
             to_stand: follow(self.to_stand, now.to_stand, CROSS_SECS),
-            at_rest: follow(self.at_rest, now.at_rest, REST_SECS),
+            at_rest: follow(self.at_rest, now.at_rest, STEADY_SECS),
+            on_course: follow(self.on_course, now.on_course, STEADY_SECS),
         }
     }
 }

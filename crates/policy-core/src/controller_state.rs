@@ -187,9 +187,10 @@ impl ControllerState {
         ];
         let steering = [self.steering.velocity.x, self.steering.velocity.y, self.steering.trim];
         let give_way = [self.give_way.speed, self.give_way.pace, self.give_way.stop_secs];
-        let urgency = [self.urgency.to_move, self.urgency.to_stand, self.urgency.at_rest];
+        let Urgency { to_move, to_stand, at_rest, on_course } = &self.urgency;
+        let urgency = [to_move, to_stand, at_rest, on_course];
         let mut others =
-            times.iter().chain(&steering).chain(&give_way).chain([&self.unevenness]).chain(&urgency);
+            times.iter().chain(&steering).chain(&give_way).chain([&self.unevenness]).chain(urgency);
         let finite = numbers.all(|n| n.is_finite()) && others.all(|n| n.is_finite());
         field("numbers", "finite numbers", finite)?;
         let progress = r.skill.map_or([0.0; 2], |s| [s.seconds, s.held_seconds]);

@@ -181,9 +181,9 @@ pub struct PolicyEntry {
     /// Name of its agile variant; see [`Node::agile`](crate::training::Node::agile).
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub agile: Option<String>,
-    /// Name of its variant for rest; see [`Node::at_rest`](crate::training::Node::at_rest).
+    /// Name of its steady variant; see [`Node::steady`](crate::training::Node::steady).
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub at_rest: Option<String>,
+    pub steady: Option<String>,
     /// Where the policy comes from: recipe, samples, seed.
     #[serde(default)]
     pub origin: String,

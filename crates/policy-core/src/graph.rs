@@ -29,8 +29,8 @@ pub struct Node {
     pub rough_ground: Option<NodeId>,
     /// Variant of the policy that it is blended with while the character does not move yet as it is asked to.
     pub agile: Option<NodeId>,
-    /// Variant of a policy that stands, which acts once the character has come to rest.
-    pub at_rest: Option<NodeId>,
+    /// Variant of the policy that acts once the character stands still, or goes straight, for a while.
+    pub steady: Option<NodeId>,
 }
 
 /// A straight line between the parameters of two policies that is itself a good policy.
@@ -218,10 +218,10 @@ impl PolicyGraph {
         position.as_node().is_some_and(|node| self.node(node).speed_mps == Some(0.0))
     }
 
-    /// True for a node that is a variant of another one: for rough ground, an agile one, or one for rest.
+    /// True for a node that is a variant of another one: for rough ground, an agile one or a steady one.
     #[must_use]
     pub fn is_variant(&self, id: NodeId) -> bool {
-        self.nodes.iter().any(|node| [node.rough_ground, node.agile, node.at_rest].contains(&Some(id)))
+        self.nodes.iter().any(|node| [node.rough_ground, node.agile, node.steady].contains(&Some(id)))
     }
 
     /// Edges.

@@ -70,7 +70,7 @@ impl CharacterPack {
                 strafes: p.strafes,
                 rough_ground: variant(&p.rough_ground)?,
                 agile: variant(&p.agile)?,
-                at_rest: variant(&p.at_rest)?,
+                steady: variant(&p.steady)?,
             })
         });
         let nodes = nodes.collect::<Result<Vec<_>, PackError>>()?;

@@ -23,7 +23,7 @@ const SKILL_LEN: usize = 3;
 const PROGRESS_LEN: usize = SKILL_LEN + 4 + 4 + 1 + 4;
 const REPORT_LEN: usize =
     2 * POSITION_LEN + BLEND_LEN + 1 + 8 + PROGRESS_LEN + 2 * SKILL_LEN + 2 * (SKILL_LEN + 1) + 3;
-const FIXED_LEN: usize = 4 + REPORT_LEN + 8 + 2 + BLEND_LEN + 4 + SKILL_LEN + 12 + 12 + 12 + 16;
+const FIXED_LEN: usize = 4 + REPORT_LEN + 8 + 2 + BLEND_LEN + 4 + SKILL_LEN + 12 + 12 + 12 + 20;
 
 impl ControllerState {
     /// Number of bytes; one for all states of a pack.
@@ -54,7 +54,8 @@ impl ControllerState {
         let steering = self.steering;
         w.floats(&[steering.velocity.x, steering.velocity.y, steering.trim]);
         w.floats(&[self.give_way.speed, self.give_way.pace, self.give_way.stop_secs]);
-        w.floats(&[self.unevenness, self.urgency.to_move, self.urgency.to_stand, self.urgency.at_rest]);
+        let urgency = self.urgency;
+        w.floats(&[self.unevenness, urgency.to_move, urgency.to_stand, urgency.at_rest, urgency.on_course]);
         debug_assert_eq!(w.at, w.out.len());
     }
 
@@ -101,7 +102,8 @@ impl ControllerState {
         (give_way.speed, give_way.pace, give_way.stop_secs) = (r.float(), r.float(), r.float());
         self.unevenness = r.float();
         let urgency = &mut self.urgency;
-        (urgency.to_move, urgency.to_stand, urgency.at_rest) = (r.float(), r.float(), r.float());
+        (urgency.to_move, urgency.to_stand) = (r.float(), r.float());
+        (urgency.at_rest, urgency.on_course) = (r.float(), r.float());
         Ok(())
     }
 }

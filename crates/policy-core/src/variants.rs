@@ -1,9 +1,9 @@
 //! Variants: a policy gives shares of its weight to others that were trained on from it: one for rough ground, one that turns, starts
-//! or stops quickly, one that stands at rest.
+//! or stops quickly, one that stands still or goes straight.
 //!
 //! All are of one family, so the straight lines between their parameters are good policies too.
 
-use crate::agility::Urgency;
+use crate::agility::{Urgency, steady_share};
 use crate::blend::{Blend, BlendTerm};
 use crate::graph::PolicyGraph;
 use crate::ids::{NodeId, PolicyId};
@@ -23,8 +23,8 @@ pub(crate) fn crossed(before: f32, now: f32, [to_all, to_nothing]: [f32; 2], dt:
 pub(crate) struct Shares {
     /// Share of the variant for rough ground.
     pub(crate) rough_ground: f32,
-    /// Share of the agile variant in what the one for rough ground leaves: of gaits that move, and of those that stand. The variant for
-    /// rest has a share of what both leave.
+    /// Share of the agile variant in what the one for rough ground leaves: of gaits that move, and of those that stand. The steady
+    /// variant has a share of what both leave.
     pub(crate) agile: Urgency,
 }
 
@@ -45,9 +45,10 @@ pub(crate) fn with_variants(graph: &PolicyGraph, blend: Blend, shares: Shares) -
         let urgency = if stands { shares.agile.to_stand } else { shares.agile.to_move };
         let agile = variant(|node| node.agile, left * urgency);
         let left = left - agile.map_or(0.0, |(_, share)| share);
-        let at_rest = variant(|node| node.at_rest, left * shares.agile.at_rest);
-        let own = left - at_rest.map_or(0.0, |(_, share)| share);
-        let parts = [Some((term.policy, own)), rough, agile, at_rest];
+        let steadily = if stands { shares.agile.at_rest } else { shares.agile.on_course };
+        let steady = variant(|node| node.steady, left * steady_share(steadily));
+        let own = left - steady.map_or(0.0, |(_, share)| share);
+        let parts = [Some((term.policy, own)), rough, agile, steady];
         for (policy, share) in parts.into_iter().flatten().filter(|(_, share)| *share > 0.0) {
             let weights = term.weights.map(|weight| share * weight);
             if shared.push(BlendTerm { policy, weights }).is_err() {

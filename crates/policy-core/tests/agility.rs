@@ -136,10 +136,10 @@ fn a_gait_that_it_is_to_stay_in_comes_to_rest_by_its_variant() {
 }
 
 #[test]
-fn a_stand_that_has_come_to_rest_is_left_to_its_variant_until_anything_is_asked() {
+fn a_stand_that_has_come_to_rest_is_left_to_its_steady_variant_until_anything_is_asked() {
     let roll = policy("roll");
     let mut stands = Controller::new(changed_pack(false, |manifest| {
-        manifest.policies[0].at_rest = Some("roll".into());
+        manifest.policies[0].steady = Some("roll".into());
         manifest.policies[1].agile = None;
     }));
     let mut rest = |state: &CharacterState, command: &Command, ticks: usize| {
@@ -150,12 +150,29 @@ fn a_stand_that_has_come_to_rest_is_left_to_its_variant_until_anything_is_asked(
     };
     let goal = Goal::Path { path: PathId::new(0), coordinate: 0.0 };
     let (still, nothing) = (walking(0.0), Command { goal, ..Command::default() });
-    assert!((rest(&still, &nothing, 3) - 0.1).abs() < 1e-5, "a second to cross");
-    assert_eq!(rest(&still, &nothing, 30), 1.0);
-    assert!((rest(&walking(0.6), &nothing, 1) - 2.0 / 3.0).abs() < 1e-5, "a push");
-    assert_eq!(rest(&walking(0.6), &nothing, 2), 0.0);
-    assert_eq!(rest(&still, &nothing, 31), 1.0);
+    assert_eq!(rest(&still, &nothing, 16), 0.0, "half a second to brake");
+    let share = rest(&still, &nothing, 16);
+    assert!((0.4..0.6).contains(&share), "a second to cross: {share}");
+    assert_eq!(rest(&still, &nothing, 17), 1.0);
+    assert!(rest(&walking(0.6), &nothing, 2) < 0.4, "a push");
+    assert_eq!(rest(&walking(0.6), &nothing, 1), 0.0);
+    assert_eq!(rest(&still, &nothing, 50), 1.0);
     assert_eq!(rest(&still, &towards(10.0 * Vec2::X), 3), 0.0, "it is to walk");
+}
+
+#[test]
+fn a_gait_that_goes_as_asked_for_a_while_is_left_to_its_steady_variant_until_it_is_to_turn() {
+    let roll = policy("roll");
+    let mut walks = Controller::new(changed_pack(false, |manifest| {
+        manifest.policies[1].agile = None;
+        manifest.policies[1].steady = Some("roll".into());
+    }));
+    let last = (0..90).map(|_| weight(&tick(&mut walks, &walking(1.0)), roll)).last();
+    assert_eq!(last, Some(1.0));
+    let turns: Vec<f32> =
+        (0..4).map(|_| weight(&tick_towards(&mut walks, &walking(1.0), -Vec2::X), roll)).collect();
+    assert!(turns[0] < 0.7 && turns[2] == 0.0, "a tenth of a second: {turns:?}");
+    assert_eq!(weight(&tick(&mut walks, &walking(1.0)), roll), 0.0, "not again at once");
 }
 
 #[test]
@@ -241,7 +258,7 @@ fn an_unknown_variant_is_refused_by_name() {
     };
     refused(manifest);
     let mut manifest = common::manifest();
-    manifest.policies[0].at_rest = Some("dancer".into());
+    manifest.policies[0].steady = Some("dancer".into());
     refused(manifest);
 }
 

@@ -182,7 +182,7 @@ fn policies(plan: &PackPlan, trained: &[TrainedSkill]) -> Result<(Vec<Mlp>, Vec<
             strafes: planned.strafes,
             rough_ground: planned.rough_ground.clone(),
             agile: planned.agile.clone(),
-            at_rest: planned.at_rest.clone(),
+            steady: planned.steady.clone(),
             origin: skill.origin.clone(),
         });
     }

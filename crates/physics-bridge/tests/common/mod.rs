@@ -108,7 +108,7 @@ fn policy_entry(name: &str, sizes: &[usize]) -> PolicyEntry {
         strafes: false,
         rough_ground: None,
         agile: None,
-        at_rest: None,
+        steady: None,
         origin: "made up".into(),
     }
 }

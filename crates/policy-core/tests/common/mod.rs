@@ -96,7 +96,7 @@ pub fn manifest() -> Manifest {
         strafes: false,
         rough_ground: None,
         agile: None,
-        at_rest: None,
+        steady: None,
         origin: "made up".into(),
     };
     let edge = |a: &str, b: &str| EdgeEntry {

@@ -67,9 +67,9 @@ pub struct PlannedPolicy {
     /// Name of its agile variant.
     #[serde(default)]
     pub agile: Option<String>,
-    /// Name of its variant for rest.
+    /// Name of its steady variant.
     #[serde(default)]
-    pub at_rest: Option<String>,
+    pub steady: Option<String>,
 }
 
 impl PackPlan {
@@ -90,7 +90,7 @@ impl PackPlan {
     pub fn only(mut self, trained: impl Fn(&str) -> bool) -> Self {
         self.policies.retain(|p| trained(&p.name));
         for policy in &mut self.policies {
-            for variant in [&mut policy.rough_ground, &mut policy.agile, &mut policy.at_rest] {
+            for variant in [&mut policy.rough_ground, &mut policy.agile, &mut policy.steady] {
                 *variant = variant.take().filter(|name| trained(name));
             }
         }

@@ -37,7 +37,7 @@ pub(super) fn show(ui: &mut Ui, app: &App, commands: &mut Vec<ViewerCommand>) {
     for &id in &shown {
         let (node, policy) = (graph.node(id), PolicyId::from(id));
         let of_variant = |variant: Option<NodeId>| variant.map_or(0.0, |id| weight_of(PolicyId::from(id)));
-        let variants = [node.rough_ground, node.agile, node.at_rest].map(of_variant).iter().sum::<f32>();
+        let variants = [node.rough_ground, node.agile, node.steady].map(of_variant).iter().sum::<f32>();
         let weight = weight_of(policy) + variants;
         let colour = if running == Some(policy) { REQUESTED } else { lit(weight) };
         let at = place(id);
@@ -55,7 +55,7 @@ pub(super) fn show(ui: &mut Ui, app: &App, commands: &mut Vec<ViewerCommand>) {
         painter.circle(at, 5.0, PRESENT, Stroke::new(1.0, Color32::WHITE));
     }
     let response = response.on_hover_text(
-        "Click a policy: the character goes there. A ring: a variant of it acts, for rough ground, in turns and starts, or at rest.",
+        "Click a policy: the character goes there. A ring: a variant of it acts, for rough ground, in turns and starts, or once it goes or stands steadily.",
     );
     if let (true, Some(pointer)) = (response.clicked(), response.interact_pointer_pos()) {
         let near = |n: &NodeId| place(*n).distance(pointer);

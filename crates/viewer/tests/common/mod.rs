@@ -135,7 +135,7 @@ pub fn quadruped() -> CharacterPack {
         strafes: false,
         rough_ground: None,
         agile: None,
-        at_rest: None,
+        steady: None,
         origin: "made up".into(),
     };
     let manifest = Manifest {

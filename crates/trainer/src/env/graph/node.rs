@@ -79,7 +79,7 @@ pub(super) fn policy_graph(
         strafes: node.strafe.is_some(),
         rough_ground: None,
         agile: None,
-        at_rest: None,
+        steady: None,
     };
     let policies = vec![policy; nodes.len()];
     PolicyGraph::from_parts(nodes.iter().map(known).collect(), &edges, paths, &policies)
