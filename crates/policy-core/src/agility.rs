@@ -31,7 +31,7 @@ pub const BRAKING_METRES: f32 = 1.0;
 const CROSS_SECS: [f32; 2] = [0.1, 0.3];
 
 /// Time in which a character becomes steady, and in which that is over, seconds.
-const STEADY_SECS: [f32; 2] = [1.6, 0.15];
+const STEADY_SECS: [f32; 2] = [1.6, 0.06];
 
 /// From where to where on the way to steadiness the steady variant comes in. First the gait itself brakes or gathers speed.
 const COMES_IN: [f32; 2] = [0.35, 1.0];
