@@ -46,7 +46,7 @@ pub(crate) struct Urgency {
     /// How long it has stood still, 1 from 1.6 s on: see [`steady_share`].
     pub(crate) at_rest: f32,
     /// How long it has gone as it is asked to, in the same measure.
-    pub(crate) on_course: f32,
+    pub(crate) as_asked: f32,
 }
 
 /// Share of the steady variants after so long.
@@ -79,12 +79,12 @@ impl Urgency {
                     to_stand: moves,
                     to_move: if stays { moves } else { 0.0 },
                     at_rest: steady(graph.stands(position), moves),
-                    on_course: 0.0,
+                    as_asked: 0.0,
                 }
             }
             (Some(target), Some(speed)) => {
                 let off = off_course(state, target, speed);
-                Self { to_move: off, on_course: steady(true, off), ..Self::default() }
+                Self { to_move: off, as_asked: steady(true, off), ..Self::default() }
             }
             (Some(_), None) => Self::default(),
         };
@@ -95,7 +95,7 @@ impl Urgency {
             to_move: follow(self.to_move, now.to_move, CROSS_SECS),
             to_stand: follow(self.to_stand, now.to_stand, CROSS_SECS),
             at_rest: follow(self.at_rest, now.at_rest, STEADY_SECS),
-            on_course: follow(self.on_course, now.on_course, STEADY_SECS),
+            as_asked: follow(self.as_asked, now.as_asked, STEADY_SECS),
         }
     }
 }

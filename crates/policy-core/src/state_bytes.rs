@@ -55,7 +55,7 @@ impl ControllerState {
         w.floats(&[steering.velocity.x, steering.velocity.y, steering.trim]);
         w.floats(&[self.give_way.speed, self.give_way.pace, self.give_way.stop_secs]);
         let urgency = self.urgency;
-        w.floats(&[self.unevenness, urgency.to_move, urgency.to_stand, urgency.at_rest, urgency.on_course]);
+        w.floats(&[self.unevenness, urgency.to_move, urgency.to_stand, urgency.at_rest, urgency.as_asked]);
         debug_assert_eq!(w.at, w.out.len());
     }
 
@@ -103,7 +103,7 @@ impl ControllerState {
         self.unevenness = r.float();
         let urgency = &mut self.urgency;
         (urgency.to_move, urgency.to_stand) = (r.float(), r.float());
-        (urgency.at_rest, urgency.on_course) = (r.float(), r.float());
+        (urgency.at_rest, urgency.as_asked) = (r.float(), r.float());
         Ok(())
     }
 }

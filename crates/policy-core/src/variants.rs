@@ -45,7 +45,7 @@ pub(crate) fn with_variants(graph: &PolicyGraph, blend: Blend, shares: Shares) -
         let urgency = if stands { shares.agile.to_stand } else { shares.agile.to_move };
         let agile = variant(|node| node.agile, left * urgency);
         let left = left - agile.map_or(0.0, |(_, share)| share);
-        let steadily = if stands { shares.agile.at_rest } else { shares.agile.on_course };
+        let steadily = if stands { shares.agile.at_rest } else { shares.agile.as_asked };
         let steady = variant(|node| node.steady, left * steady_share(steadily));
         let own = left - steady.map_or(0.0, |(_, share)| share);
         let parts = [Some((term.policy, own)), rough, agile, steady];
