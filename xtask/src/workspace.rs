@@ -62,8 +62,9 @@ impl Workspace {
         command
     }
 
-    /// The cargo that runs this program, in the workspace's root. In a clone in which nobody has built anything by hand it writes no data for
-    /// incremental builds: nothing would be built on them, and they are 3.6 of 12 GB.
+    /// The cargo that runs this program, in the workspace's root.
+    ///
+    /// In a fresh clone it writes no incremental build data, which takes 3.6 of 12 GB and saves nothing there.
     pub fn cargo(&self) -> Command {
         let mut cargo = self.command(std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into()));
         if !self.target().join("debug/incremental").is_dir() {

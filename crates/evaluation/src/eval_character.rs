@@ -60,7 +60,7 @@ impl EvalCharacter {
     pub fn at(model: &Model, pack: &Arc<CharacterPack>, node: NodeId) -> Self {
         let graph = pack.graph();
         let path = graph.paths().iter().find(|p| p.nodes().contains(&node));
-        let stands = graph.node(node).speed_mps == Some(0.0);
+        let stands = graph.node(node).stands();
         let start = path.filter(|_| !stands).map_or(node, |p| p.nodes()[1]);
         let mut eval = Self::new(model, pack, &graph.node(start).name);
         for _ in 0..(REACH_SECS / TICK_SECS) as u32 {
@@ -78,7 +78,7 @@ impl EvalCharacter {
     pub fn reset(&mut self, heading: Heading) {
         self.controller.reset();
         let node = self.controller.report().position.nearest_node();
-        let stands = self.controller.pack().graph().node(node).speed_mps == Some(0.0);
+        let stands = self.controller.pack().graph().node(node).stands();
         let speed = if stands { 0.0 } else { WALKING_START_MPS };
         self.character.stand_at(0.0, 0.0, heading, speed).expect("zeros are finite");
         self.character.sense_into(&mut self.state);
@@ -95,7 +95,7 @@ impl EvalCharacter {
     /// The command to go straight ahead along x as `node`; to stay, for a node that stands.
     #[must_use]
     pub fn ahead(&self, node: NodeId) -> Command {
-        let stands = self.controller.pack().graph().node(node).speed_mps == Some(0.0);
+        let stands = self.controller.pack().graph().node(node).stands();
         let target = self.position() + Vec2::new(TARGET_RANGE_METRES, 0.0);
         Command { target: (!stands).then_some(target), goal: Goal::Node(node), ..Command::default() }
     }

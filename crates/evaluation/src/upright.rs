@@ -46,7 +46,7 @@ pub fn measure_upright(
 fn walk(model: &Model, pack: &Arc<CharacterPack>, node: NodeId, seed: u64) -> Option<f32> {
     let graph = pack.graph();
     let mut eval = EvalCharacter::at(model, pack, node);
-    let stands = graph.node(node).speed_mps == Some(0.0);
+    let stands = graph.node(node).stands();
     let mut rng = Rng::new(seed, 17);
     let (mut angle, mut along) = (0.0, 0.0);
     let ticks = (TEST_SECS / TICK_SECS) as u32;

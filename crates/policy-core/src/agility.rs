@@ -2,9 +2,9 @@
 //! done as it is asked to for a while, with its steady variant.
 //!
 //! A gait that turns, starts or stops quickly looks hurried while it walks straight ahead. So the variant acts in the moments in which
-//! it is needed, and the gait acts alone, with the bits that it has without a variant, once the character goes as it is asked to. A gait that is
-//! ready for anything does not look at ease either: a stand that can brake and set off leans and shuffles, a run that can turn lets its feet
-//! slide. Its steady variant stands upright and still, or goes straight, and does nothing else well.
+//! it is needed, and not at all once the character goes as it is asked to; without other variants the gait then acts with the bits that it
+//! has alone. Nor does a gait that is ready for anything look at ease: a stand that can brake and set off leans and shuffles, a walk that
+//! can turn takes short steps. A steady variant stands upright and still, or goes straight, and does nothing else well.
 
 use glam::Vec2;
 
@@ -36,7 +36,7 @@ const STEADY_SECS: [f32; 2] = [1.6, 0.06];
 /// From where to where on the way to steadiness the steady variant comes in. First the gait itself brakes or gathers speed.
 const COMES_IN: [f32; 2] = [0.35, 1.0];
 
-/// How far a character is from what it is asked to do, each in [0, 1].
+/// How far a character is from what it is asked to do, and how long it has done it, each in [0, 1].
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct Urgency {
     /// From going where it is asked to go, or from rest in a gait that it is to stay in: for the variants of gaits that move.
@@ -68,7 +68,9 @@ impl Urgency {
     ) -> Self {
         let crosses = graph.edge_at(position).is_some_and(|edge| edge.transit)
             && fall_height(graph, goal) > fall_height(graph, position);
-        let arrived = position == goal || position.as_node().is_some_and(|node| Some(node) == goal.as_node());
+        let node = position.as_node();
+        let arrived = position == goal || node.is_some() && node == goal.as_node();
+        let stands = node.is_some_and(|node| graph.node(node).stands());
         let steady = |can_be: bool, off: f32| if arrived && can_be { 1.0 - off } else { 0.0 };
         let now = match (target, moving_mps(graph, position)) {
             _ if crosses => Self::default(),
@@ -78,7 +80,7 @@ impl Urgency {
                 Self {
                     to_stand: moves,
                     to_move: if stays { moves } else { 0.0 },
-                    at_rest: steady(graph.stands(position), moves),
+                    at_rest: steady(stands, moves),
                     as_asked: 0.0,
                 }
             }

@@ -33,6 +33,20 @@ pub struct Node {
     pub steady: Option<NodeId>,
 }
 
+impl Node {
+    /// True for a gait that stands: its speed is 0.
+    #[must_use]
+    pub fn stands(&self) -> bool {
+        self.speed_mps == Some(0.0)
+    }
+
+    /// Its variants, where it has them: for rough ground, agile, steady.
+    #[must_use]
+    pub fn variants(&self) -> [Option<NodeId>; 3] {
+        [self.rough_ground, self.agile, self.steady]
+    }
+}
+
 /// A straight line between the parameters of two policies that is itself a good policy.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Edge {
@@ -212,16 +226,10 @@ impl PolicyGraph {
         all.filter(|(id, _)| !self.is_variant(*id))
     }
 
-    /// True at a node that stands: its speed is 0.
-    #[must_use]
-    pub(crate) fn stands(&self, position: GraphPosition) -> bool {
-        position.as_node().is_some_and(|node| self.node(node).speed_mps == Some(0.0))
-    }
-
     /// True for a node that is a variant of another one: for rough ground, an agile one or a steady one.
     #[must_use]
     pub fn is_variant(&self, id: NodeId) -> bool {
-        self.nodes.iter().any(|node| [node.rough_ground, node.agile, node.steady].contains(&Some(id)))
+        self.nodes.iter().any(|node| node.variants().contains(&Some(id)))
     }
 
     /// Edges.

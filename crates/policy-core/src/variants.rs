@@ -41,7 +41,7 @@ pub(crate) fn with_variants(graph: &PolicyGraph, blend: Blend, shares: Shares) -
         };
         let rough = variant(|node| node.rough_ground, shares.rough_ground);
         let left = 1.0 - rough.map_or(0.0, |(_, share)| share);
-        let stands = node.is_some_and(|node| node.speed_mps == Some(0.0));
+        let stands = node.is_some_and(crate::graph::Node::stands);
         let urgency = if stands { shares.agile.to_stand } else { shares.agile.to_move };
         let agile = variant(|node| node.agile, left * urgency);
         let left = left - agile.map_or(0.0, |(_, share)| share);

@@ -96,7 +96,7 @@ impl Trial {
     /// True when the policy that the controller starts with stands still.
     fn stands(&self) -> bool {
         let node = self.controller.report().position.nearest_node();
-        self.controller.pack().graph().node(node).speed_mps == Some(0.0)
+        self.controller.pack().graph().node(node).stands()
     }
 
     /// Points the stick to a direction, radians from x, counter-clockwise, as far as `push` in [0, 1].

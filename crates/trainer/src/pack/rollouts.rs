@@ -109,7 +109,7 @@ impl Rollout {
 
     /// Acts at a node for a while; `None` when the physics diverged.
     fn walk(&mut self, node: NodeId) -> Option<()> {
-        let stands = self.pack.graph().node(node).speed_mps == Some(0.0);
+        let stands = self.pack.graph().node(node).stands();
         let speed = if stands { 0.0 } else { self.rng.range(0.5, 1.0) * WALKING_START_MPS };
         self.character.stand_at(0.0, 0.0, Heading::FORWARD, speed).ok()?;
         self.character.sense_into(&mut self.state);

@@ -36,8 +36,8 @@ pub(super) fn show(ui: &mut Ui, app: &App, commands: &mut Vec<ViewerCommand>) {
     };
     for &id in &shown {
         let (node, policy) = (graph.node(id), PolicyId::from(id));
-        let of_variant = |variant: Option<NodeId>| variant.map_or(0.0, |id| weight_of(PolicyId::from(id)));
-        let variants = [node.rough_ground, node.agile, node.steady].map(of_variant).iter().sum::<f32>();
+        let variants =
+            node.variants().into_iter().flatten().map(|id| weight_of(PolicyId::from(id))).sum::<f32>();
         let weight = weight_of(policy) + variants;
         let colour = if running == Some(policy) { REQUESTED } else { lit(weight) };
         let at = place(id);
