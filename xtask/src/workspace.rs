@@ -67,11 +67,16 @@ impl Workspace {
     /// In a fresh clone it writes no incremental build data, which takes 3.6 of 12 GB and saves nothing there.
     pub fn cargo(&self) -> Command {
         let mut cargo = self.command(std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into()));
-        if !self.target().join("debug/incremental").is_dir() {
+        if !has_entries(&self.target().join("debug/incremental")) {
             cargo.env("CARGO_INCREMENTAL", "0");
         }
         cargo
     }
+}
+
+/// True for a folder with anything in it. Cargo makes its folders before it has anything to put there.
+fn has_entries(folder: &Path) -> bool {
+    fs::read_dir(folder).is_ok_and(|mut entries| entries.next().is_some())
 }
 
 /// Runs a command to its end.
@@ -204,6 +209,14 @@ mod tests {
         let message = run(&mut command).unwrap_err().to_string();
         assert!(message.contains("no-such-subcommand-of-cargo"), "{message}");
         assert!(run(&mut Command::new("no-such-program-anywhere")).is_err());
+    }
+
+    #[test]
+    fn a_folder_without_anything_in_it_has_no_entries() {
+        let root = ScratchFolder::new("entries");
+        assert!(!has_entries(root.path()) && !has_entries(&root.path().join("none")));
+        fs::create_dir_all(root.path().join("viewer-1a2b")).unwrap();
+        assert!(has_entries(root.path()));
     }
 
     #[test]
