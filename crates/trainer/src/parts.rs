@@ -17,6 +17,7 @@ use crate::style::{Discriminators, NodeDiscriminator};
 use crate::training::{POLICY_HIDDEN, Parts};
 use crate::workspace::Workspace;
 
+mod company;
 mod joint;
 
 /// How often episodes of an edge rest at the parent and at the child.
@@ -125,6 +126,7 @@ impl Workspace {
             hand_over: Vec::new(),
             heights,
             pushed,
+            company: self.company(recipe)?,
         })
     }
 

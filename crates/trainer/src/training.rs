@@ -71,8 +71,16 @@ impl Training {
     /// Starts a run.
     #[must_use]
     pub fn new(recipe: Recipe, model: &Model, normalisers: Normalisers, parts: Parts, seed: u64) -> Self {
-        let Parts { graph, learner, discriminators, start_demonstrations, hand_over, heights, pushed } =
-            parts;
+        let Parts {
+            graph,
+            learner,
+            discriminators,
+            start_demonstrations,
+            hand_over,
+            heights,
+            pushed,
+            company,
+        } = parts;
         let environment = &recipe.first().environment;
         let shape = (environment.horizon, environment.num_envs);
         let skeleton = model.skeleton().clone();
@@ -80,8 +88,16 @@ impl Training {
         let demonstrations = discriminators.demonstrations();
         let [inputs, actions] = [skeleton.policy_input_len(), skeleton.joint_count()];
         let scored = skeleton.discriminator_input_len();
-        let shared =
-            Shared { graph, start_demonstrations, hand_over, normalisers, heights, pushed, skeleton };
+        let shared = Shared {
+            graph,
+            start_demonstrations,
+            hand_over,
+            normalisers,
+            heights,
+            pushed,
+            company,
+            skeleton,
+        };
         let context = shared.context(environment, &demonstrations);
         let envs = VecEnv::new(std::slice::from_ref(model), &scaling, &context, seed);
         Self {
@@ -158,9 +174,9 @@ impl Training {
         let models_of = |config: &EnvironmentConfig| {
             let RandomisationConfig { terrain_metres, step_metres, slope_metres, dynamics, .. } =
                 config.randomisation;
-            [terrain_metres, step_metres, slope_metres, dynamics]
+            [terrain_metres, step_metres, slope_metres, dynamics, config.meetings.share]
         };
-        if before.map_or([0.0; 4], models_of) != models_of(&phase.environment) {
+        if before.map_or([0.0; 5], models_of) != models_of(&phase.environment) {
             let models = randomisation.models(&self.model)?;
             let demonstrations = self.discriminators.demonstrations();
             let context = self.shared.context(&phase.environment, &demonstrations);

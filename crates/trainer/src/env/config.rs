@@ -4,6 +4,7 @@ use serde::{Deserialize, Serialize};
 
 use super::command::CommandConfig;
 use super::exploration::ExplorationConfig;
+use super::meetings::MeetingsConfig;
 use super::randomisation::RandomisationConfig;
 use super::reset::ResetConfig;
 use super::reward::RewardConfig;
@@ -31,6 +32,8 @@ pub struct EnvironmentConfig {
     pub reset: ResetConfig,
     /// Ground, pushes and differences of the body.
     pub randomisation: RandomisationConfig,
+    /// What characters meet.
+    pub meetings: MeetingsConfig,
 }
 
 impl Default for EnvironmentConfig {
@@ -45,6 +48,7 @@ impl Default for EnvironmentConfig {
             termination: TerminationConfig::default(),
             reset: ResetConfig::default(),
             randomisation: RandomisationConfig::default(),
+            meetings: MeetingsConfig::default(),
         }
     }
 }

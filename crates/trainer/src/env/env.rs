@@ -2,9 +2,9 @@
 //! returns reward terms and how the tick ended.
 
 use glam::Vec2;
-use physics_bridge::{Character, Model};
+use physics_bridge::{Character, Contact, Model};
 use policy_core::training::{ActionScaling, FrameHistory, Heights, discriminator_frame_into};
-use policy_core::{BodyId, CharacterState, Heading, JointTargets, Skeleton};
+use policy_core::{BodyId, CharacterState, Controller, Heading, JointTargets, Skeleton};
 use random::Rng;
 
 use super::command::{Command, DT_SECS};
@@ -12,6 +12,7 @@ use super::config::EnvironmentConfig;
 use super::demonstrations::Demonstrations;
 use super::exploration::Exploration;
 use super::graph::TrainingGraph;
+use super::meetings::Company;
 use super::normalisers::Normalisers;
 use super::reset::{HandOver, PreFailureStates};
 use super::reward::{Pace, RewardTerms, Task, foot_slip_mps, standing_reward, target_reward};
@@ -40,6 +41,8 @@ pub struct EnvContext<'a> {
     pub heights: &'a TerminationHeights,
     /// Bodies that are pushed.
     pub pushed: &'a [BodyId],
+    /// Who drives the characters that are met, where some are. They need a controller.
+    pub company: Option<&'a Controller>,
 }
 
 /// A finished episode.
@@ -55,6 +58,8 @@ pub struct Episode {
 #[derive(Debug)]
 pub struct Env {
     pub(super) character: Character,
+    /// The world in which it meets others, where it does. `character` is then only what episodes start from.
+    pub(super) company: Option<Box<Company>>,
     /// What the character senses now.
     pub state: CharacterState,
     /// What it is told to do.
@@ -93,11 +98,17 @@ const GRAVITY: f32 = 9.81;
 impl Env {
     /// An environment with its own random numbers; [`Env::reset`] starts its first episode.
     #[must_use]
-    pub fn new(model: &Model, rng: Rng) -> Self {
+    pub fn new(model: &Model, context: &EnvContext<'_>, mut rng: Rng) -> Self {
         let skeleton = model.skeleton();
+        let share = context.config.meetings.share;
+        let meets = context.company.filter(|_| share > 0.0 && rng.chance(share));
+        let company = meets.map(|controller| {
+            Box::new(Company::new(model, controller, &mut rng).expect("a world of a model that was loaded"))
+        });
         let targets = JointTargets::new(skeleton);
         Self {
             character: Character::new(model),
+            company,
             state: CharacterState::new(skeleton),
             command: Command::default(),
             history: FrameHistory::new(skeleton.frame_len()),
@@ -148,7 +159,7 @@ impl Env {
         let config = context.config;
         let before = self.root_position();
         let diverged = self.act(context, scaling, action);
-        self.character.sense_into(&mut self.state);
+        self.sense();
         self.push_frame(context);
         self.history.input_into(discriminator_input);
         self.age += 1;
@@ -166,6 +177,9 @@ impl Env {
             return (terms, Done::TimedOut);
         }
         if config.reset.pre_failure_share > 0.0 && self.pre_failure.tick() {
+            if let Some(company) = &mut self.company {
+                company.copy_to(&mut self.character);
+            }
             self.pre_failure.keep(&self.character, &self.history, self.command);
         }
         let (tracking, lost) =
@@ -176,14 +190,31 @@ impl Env {
 
     /// Actuates and steps; true when the physics diverged.
     fn act(&mut self, context: &EnvContext<'_>, scaling: &ActionScaling, action: &[f32]) -> bool {
+        self.push(context);
         let [now, before] = &mut self.targets;
         std::mem::swap(now, before);
         scaling.targets_into(action, now);
         let late = self.delayed && self.has_late_targets;
-        self.character.actuate(if late { before } else { now });
+        let targets = if late { before } else { now };
         self.has_late_targets = true;
-        self.push(context);
+        if let Some(company) = &mut self.company {
+            return company.step(targets, &self.state, context.config.meetings.pause_secs, &mut self.rng);
+        }
+        self.character.actuate(targets);
         self.character.step().is_err()
+    }
+
+    /// Senses where it is stepped.
+    fn sense(&mut self) {
+        match &self.company {
+            Some(company) => company.sense_into(&mut self.state),
+            None => self.character.sense_into(&mut self.state),
+        }
+    }
+
+    /// Where it touches.
+    fn contacts(&self) -> &[Contact] {
+        self.company.as_ref().map_or(self.character.contacts(), |company| company.contacts())
     }
 
     /// Reward terms of a tick, without tracking.
@@ -206,8 +237,7 @@ impl Env {
             return terms;
         }
         let weight = self.character.model().mass_kg() as f32 * GRAVITY;
-        let foot_slip_mps =
-            foot_slip_mps(context.skeleton.feet(), &self.state, self.character.contacts(), weight);
+        let foot_slip_mps = foot_slip_mps(context.skeleton.feet(), &self.state, self.contacts(), weight);
         RewardTerms { foot_slip_mps, ..terms }
     }
 

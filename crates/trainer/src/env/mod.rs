@@ -12,6 +12,7 @@ mod exploration;
 mod graph;
 #[cfg(test)]
 mod made_up;
+mod meetings;
 mod normalisers;
 mod observation;
 mod randomisation;
@@ -28,6 +29,8 @@ pub use demonstrations::{ClipPhase, Demonstrations, ReferenceState};
 pub use env::{Env, EnvContext, Episode};
 pub use exploration::ExplorationConfig;
 pub use graph::{GraphNode, TrainingGraph};
+pub use meetings::MeetingsConfig;
+pub(crate) use meetings::WALK;
 pub use normalisers::Normalisers;
 pub use randomisation::RandomisationConfig;
 pub use reset::{HandOver, HandOverConfig, ResetConfig};

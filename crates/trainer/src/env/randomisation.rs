@@ -135,9 +135,11 @@ impl Env {
             };
             let force = Vec2::from_angle(angle) * self.rng.uniform() * share * config.push_newton;
             let body = context.pushed[self.rng.index(context.pushed.len())];
-            self.character
-                .push(body, force.extend(0.0), secs)
-                .expect("a recipe's push is between 0 and 5000 newton");
+            let within = "a recipe's push is between 0 and 5000 newton";
+            match &mut self.company {
+                Some(company) => company.push(body, force.extend(0.0), secs).expect(within),
+                None => self.character.push(body, force.extend(0.0), secs).expect(within),
+            }
         }
     }
 }

@@ -71,6 +71,13 @@ impl Env {
     /// Starts an episode. The first one begins anywhere in its time, later ones at most a quarter of it late: without random
     /// ages all episodes of a population without falls would end together.
     pub fn reset(&mut self, context: &EnvContext<'_>, first: bool) {
+        self.start(context, first);
+        if let Some(company) = &mut self.company {
+            company.begin(&self.character, context.config.meetings.pause_secs, &mut self.rng);
+        }
+    }
+
+    fn start(&mut self, context: &EnvContext<'_>, first: bool) {
         let config = context.config;
         let ticks = config.episode_ticks as usize;
         self.born_at = self.rng.index(if first { ticks } else { ticks.div_ceil(4) }) as u32;

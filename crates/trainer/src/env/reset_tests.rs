@@ -32,8 +32,9 @@ fn a_standing_start_is_upright_and_moves_ahead() {
         normalisers: &normalisers,
         heights: &TerminationHeights::new(&config.termination, model.skeleton()).unwrap(),
         pushed: &[],
+        company: None,
     };
-    let mut env = Env::new(&model, Rng::new(5, 0));
+    let mut env = Env::new(&model, &context, Rng::new(5, 0));
     let mut speeds = Vec::new();
     for _ in 0..20 {
         env.reset(&context, false);

@@ -73,7 +73,7 @@ impl VecEnv {
         let count = context.config.num_envs;
         let width = context.critic_inputs();
         let model = |i: usize| &models[i % models.len()];
-        let envs = (0..count).map(|i| Env::new(model(i), Rng::new(seed, 1000 + i as u64))).collect();
+        let envs = (0..count).map(|i| Env::new(model(i), context, Rng::new(seed, 1000 + i as u64))).collect();
         let mut vec_env = Self {
             envs,
             ends: vec![Done::No; count],

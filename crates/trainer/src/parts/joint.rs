@@ -1,25 +1,21 @@
 //! What a joint run starts from: several skills, each with the networks and clips of its own run.
 
-use std::sync::Arc;
-
 use anyhow::{Context, Result};
 use files::quoted;
 use policy_core::{Controller, ControllerConfig, SkillId};
 use random::Rng;
 
+use super::company::PLAN;
 use super::{bodies, critic_sizes};
 use crate::amp::DiscriminatorLearner;
 use crate::env::{Demonstrations, GraphNode, HandOver, HandOverConfig, TrainingGraph};
 use crate::nn::Network;
-use crate::pack::{PackPlan, TrainedSkill, bind};
+use crate::pack::PackPlan;
 use crate::ppo::{Actor, Learner};
 use crate::recipe::Recipe;
 use crate::style::{Discriminators, NodeDiscriminator};
 use crate::training::Parts;
 use crate::workspace::Workspace;
-
-/// Plan of the pack, in the folder of recipes.
-const PLAN: &str = "pack/humanoid.toml";
 
 impl Workspace {
     /// All skills of some paths together.
@@ -75,7 +71,16 @@ impl Workspace {
         let hand_over = starts.iter().map(|start| self.hand_over(start, &graph)).collect::<Result<_>>()?;
         let discriminators = Discriminators::new(scorers, halfway);
         let (heights, pushed) = bodies(recipe, skeleton)?;
-        Ok(Parts { graph, learner, discriminators, start_demonstrations, hand_over, heights, pushed })
+        Ok(Parts {
+            graph,
+            learner,
+            discriminators,
+            start_demonstrations,
+            hand_over,
+            heights,
+            pushed,
+            company: self.company(recipe)?,
+        })
     }
 
     /// Indices of the edges whose middle has a style of its own.
@@ -111,14 +116,7 @@ impl Workspace {
             |n: &str| n == skill.policy || n == skill.returns_to || Some(n) == skill.discriminator.as_deref();
         let mut plan = plan.only(needed);
         plan.skills.retain(|s| s.name == *name);
-        let mut trained = Vec::new();
-        for policy in &plan.policies {
-            let (checkpoint, path) = self.trained(&policy.name)?.with_context(|| {
-                format!("starts at the end of {name} need {}, which is not trained yet", policy.name)
-            })?;
-            trained.push(TrainedSkill::from_checkpoint(&policy.name, &checkpoint, &path)?);
-        }
-        let pack = Arc::new(bind(&plan, &trained, &self.normalisers, &self.model, None)?);
+        let pack = self.pack_of(&plan, &format!("starts at the end of {name}"))?;
         let config = ControllerConfig {
             auto_recover: false,
             assist_rise: false,

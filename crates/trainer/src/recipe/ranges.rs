@@ -76,6 +76,8 @@ const RANGES: &[(&str, f64, f64)] = &[
     ("environment.randomisation.long_push_share", 0.0, 1.0),
     ("environment.randomisation.push_secs", 0.0, 1e6),
     ("environment.randomisation.push_newton", 0.0, 5000.0),
+    ("environment.meetings.share", 0.0, 1.0),
+    ("environment.meetings.pause_secs", 0.0, 600.0),
     ("ppo.gamma", 0.0, 0.9999),
     ("ppo.epochs", 1.0, 64.0),
     ("ppo.minibatch", 1.0, 65_536.0),

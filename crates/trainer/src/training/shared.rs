@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use policy_core::{BodyId, Skeleton};
+use policy_core::{BodyId, Controller, Skeleton};
 
 use crate::env::{
     Demonstrations, EnvContext, EnvironmentConfig, HandOver, Normalisers, TerminationHeights, TrainingGraph,
@@ -27,6 +27,8 @@ pub struct Parts {
     pub heights: TerminationHeights,
     /// Bodies that are pushed.
     pub pushed: Vec<BodyId>,
+    /// Drives the characters that are met, where a phase has some.
+    pub company: Option<Controller>,
 }
 
 /// What the environments share beside the discriminators' clips.
@@ -38,6 +40,7 @@ pub(super) struct Shared {
     pub(super) normalisers: Normalisers,
     pub(super) heights: TerminationHeights,
     pub(super) pushed: Vec<BodyId>,
+    pub(super) company: Option<Controller>,
     pub(super) skeleton: Arc<Skeleton>,
 }
 
@@ -57,6 +60,7 @@ impl Shared {
             normalisers: &self.normalisers,
             heights: &self.heights,
             pushed: &self.pushed,
+            company: self.company.as_ref(),
             skeleton: &self.skeleton,
         }
     }

@@ -124,8 +124,9 @@ mod tests {
             normalisers: &normalisers,
             heights: &TerminationHeights::new(&config.termination, model.skeleton()).unwrap(),
             pushed: &[],
+            company: None,
         };
-        let mut env = Env::new(&model, Rng::new(7, 0));
+        let mut env = Env::new(&model, &context, Rng::new(7, 0));
         let mut up = 0;
         for _ in 0..8 {
             if env.start_at_hand_over(&context, &hand_over) {

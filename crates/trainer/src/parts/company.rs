@@ -1,0 +1,45 @@
+//! Controllers of skills that are trained already, for what happens around a character that learns.
+
+use std::sync::Arc;
+
+use anyhow::{Context, Result, ensure};
+use policy_core::{CharacterPack, Controller, ControllerConfig};
+
+use crate::env::WALK;
+use crate::pack::{PackPlan, TrainedSkill, bind};
+use crate::recipe::Recipe;
+use crate::workspace::Workspace;
+
+/// Plan of the pack, in the folder of recipes.
+pub(super) const PLAN: &str = "pack/humanoid.toml";
+
+/// Where the other characters stand.
+const IDLE: &str = "idle";
+
+impl Workspace {
+    /// What drives the characters that are met in a recipe's phases; `None` where nothing is met.
+    pub(super) fn company(&self, recipe: &Recipe) -> Result<Option<Controller>> {
+        if recipe.phases.iter().all(|phase| phase.environment.meetings.share == 0.0) {
+            return Ok(None);
+        }
+        let plan = PackPlan::load(&self.recipes.join(PLAN))?.only(|name| name == IDLE || name == WALK);
+        let pack = self.pack_of(&plan, "environment.meetings")?;
+        let start = pack.graph().node_named(WALK);
+        let start = start.with_context(|| format!("expected a node {WALK} in {PLAN}, found none"))?;
+        let config = ControllerConfig { start, auto_recover: false, ..ControllerConfig::default() };
+        Ok(Some(Controller::with_config(pack, config)))
+    }
+
+    /// A pack of the trained skills of a plan. `needed_by` is what an error names.
+    pub(super) fn pack_of(&self, plan: &PackPlan, needed_by: &str) -> Result<Arc<CharacterPack>> {
+        ensure!(!plan.policies.is_empty(), "{needed_by}: expected policies in {PLAN}, found none");
+        let mut trained = Vec::new();
+        for policy in &plan.policies {
+            let (checkpoint, path) = self
+                .trained(&policy.name)?
+                .with_context(|| format!("{needed_by} need {}, which is not trained yet", policy.name))?;
+            trained.push(TrainedSkill::from_checkpoint(&policy.name, &checkpoint, &path)?);
+        }
+        Ok(Arc::new(bind(plan, &trained, &self.normalisers, &self.model, None)?))
+    }
+}
