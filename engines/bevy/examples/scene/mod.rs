@@ -34,6 +34,7 @@ fn build_scene(
     mut meshes: ResMut<Assets<Mesh>>,
     mut materials: ResMut<Assets<StandardMaterial>>,
 ) {
+    commands.insert_resource(ClearColor(Color::srgb(0.60, 0.72, 0.85)));
     commands.spawn((
         Collider::cuboid(100.0, 0.5, 100.0),
         Friction::coefficient(1.0),
