@@ -323,8 +323,8 @@ typedef struct PsConfig {
   int32_t start_node;
   // Time over which joint targets pass from one policy to the other when a skill starts or ends, seconds; 0 for a jump.
   float handover_secs;
-  // Time after a skill in which the character stays in the gait that the skill returns to, without its agile variant, and turns little,
-  // seconds; 0 to go on at once.
+  // Time after a skill in which the character stays in the gait that the skill returns to, and turns little, seconds; 0 to go on at
+  // once.
   float settle_secs;
   // Not 0: fast gaits slow down and slow ones speed up while the target lies far off the heading.
   int32_t turn_assist;

@@ -232,7 +232,6 @@ impl Controller {
         let (command, goal) = self.bound_for(state, &command);
         self.travel(goal, heights, dt);
         self.state.urgency = match self.config.agility {
-            true if self.state.settle_secs > 0.0 => Urgency::default(),
             true => {
                 let place = (self.pack.graph(), self.state.report.position, self.state.report.goal);
                 self.state.urgency.next(place, state, command.target, dt)
