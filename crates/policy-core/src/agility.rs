@@ -8,7 +8,6 @@
 
 use glam::Vec2;
 
-use crate::fall::fall_height;
 use crate::graph::PolicyGraph;
 use crate::heading::Heading;
 use crate::path::GraphPosition;
@@ -58,7 +57,7 @@ impl Urgency {
     /// What it is after a tick of `dt` seconds at a position on the graph, on the way to another.
     ///
     /// A speed beyond the one asked for is no error: the way back to a slower gait brakes. Gaits without a speed ask for nothing, and on
-    /// the way up an edge that is only crossed the body stands up before it goes anywhere.
+    /// an edge that is only crossed the body stands up, or goes down, before it goes anywhere.
     pub(crate) fn next(
         self,
         (graph, position, goal): (&PolicyGraph, GraphPosition, GraphPosition),
@@ -66,8 +65,7 @@ impl Urgency {
         target: Option<Vec2>,
         dt: f32,
     ) -> Self {
-        let crosses = graph.edge_at(position).is_some_and(|edge| edge.transit)
-            && fall_height(graph, goal) > fall_height(graph, position);
+        let crosses = graph.edge_at(position).is_some_and(|edge| edge.transit);
         let node = position.as_node();
         let arrived = position == goal || node.is_some() && node == goal.as_node();
         let stands = node.is_some_and(|node| graph.node(node).stands());

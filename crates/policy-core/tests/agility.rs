@@ -176,11 +176,11 @@ fn a_gait_that_goes_as_asked_for_a_while_is_left_to_its_steady_variant_until_it_
 }
 
 #[test]
-fn on_the_way_up_an_edge_that_is_only_crossed_gaits_act_alone() {
-    let agile_share_half_way = |transit: bool| {
+fn on_an_edge_that_is_only_crossed_gaits_act_alone_up_and_down() {
+    let agile_share_half_way = |transit: bool, lower: usize| {
         let pack = changed_pack(false, |manifest| {
             manifest.edges[0].transit = transit;
-            manifest.policies[0].fall_height = Some(0.2);
+            manifest.policies[lower].fall_height = Some(0.2);
         });
         let config = ControllerConfig {
             steering: None,
@@ -199,8 +199,10 @@ fn on_the_way_up_an_edge_that_is_only_crossed_gaits_act_alone() {
         assert!(!shares.is_empty());
         shares.into_iter().fold(0.0, f32::max)
     };
-    assert!(agile_share_half_way(false) > 0.1);
-    assert_eq!(agile_share_half_way(true), 0.0);
+    for lower in [0, 1] {
+        assert!(agile_share_half_way(false, lower) > 0.1);
+        assert_eq!(agile_share_half_way(true, lower), 0.0);
+    }
 }
 
 #[test]
