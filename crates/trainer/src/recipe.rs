@@ -171,6 +171,12 @@ impl Recipe {
         // A recipe without phases is refused.
         &self.phases[self.phases.len() - 1]
     }
+
+    /// True when characters meet others in one of its phases.
+    #[must_use]
+    pub fn meets_others(&self) -> bool {
+        self.phases.iter().any(|phase| phase.environment.meetings.share > 0.0)
+    }
 }
 
 #[cfg(test)]

@@ -41,7 +41,7 @@ pub struct EnvContext<'a> {
     pub heights: &'a TerminationHeights,
     /// Bodies that are pushed.
     pub pushed: &'a [BodyId],
-    /// Who drives the characters that are met, where some are. They need a controller.
+    /// The controller of the characters that are met; `None` where nothing is met.
     pub company: Option<&'a Controller>,
 }
 
@@ -93,7 +93,7 @@ pub struct Env {
 const STOOD_TICKS: u32 = 5;
 
 /// Standard gravity, metres per second squared.
-const GRAVITY: f32 = 9.81;
+pub(super) const GRAVITY: f32 = 9.81;
 
 impl Env {
     /// An environment with its own random numbers; [`Env::reset`] starts its first episode.

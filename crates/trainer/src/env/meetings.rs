@@ -18,7 +18,7 @@ use self::arrange::{BALL_KG, CRATE_HALF_METRES, CRATE_KG};
 use self::other::Other;
 use super::command::DT_SECS;
 
-pub(crate) use self::other::WALK;
+pub(crate) use self::other::{MET, WALK};
 
 /// What characters meet.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
@@ -36,13 +36,21 @@ pub(super) struct Company {
     world: World,
     own: CharacterHandle,
     other: Other,
-    ball: PropHandle,
-    block: PropHandle,
+    ball: Loose,
+    block: Loose,
     /// Where the own character touches the ground.
     contacts: Vec<Contact>,
     pose: Pose,
     /// Ticks until the next meeting.
     ticks_left: u32,
+}
+
+/// A prop that is laid down or thrown.
+#[derive(Clone, Copy, Debug)]
+struct Loose {
+    prop: PropHandle,
+    /// Height of its middle above the ground that it lies on, metres.
+    half_metres: f32,
 }
 
 /// What is not met waits this far away, metres.
@@ -71,6 +79,8 @@ impl Company {
             ))
         })?;
         let other = Other::new(other, controller);
+        let [ball, block] =
+            [(ball, radius), (block, half)].map(|(prop, half_metres)| Loose { prop, half_metres });
         let contacts = Vec::with_capacity(64);
         let pose = Character::new(model).pose();
         Ok(Self { world, own, other, ball, block, contacts, pose, ticks_left: 0 })
@@ -126,8 +136,8 @@ impl Company {
         let at = self.place().with_y(self.place().y + ASIDE_METRES);
         self.other.stand(&mut self.world, at, 0.0, 0.0);
         self.other.way = None;
-        for (prop, along) in [(self.ball, 3.0), (self.block, -3.0)] {
-            self.lay(prop, at + along * Vec2::X, Quat::IDENTITY);
+        for (loose, along) in [(self.ball, 3.0), (self.block, -3.0)] {
+            self.lay(loose, at + along * Vec2::X, Quat::IDENTITY);
         }
     }
 
@@ -136,15 +146,10 @@ impl Company {
     }
 
     /// Lays a prop down at rest.
-    fn lay(&mut self, prop: PropHandle, at: Vec2, rotation: Quat) {
-        let half = match &self.world.prop(prop).expect("it is never removed").solid {
-            Solid::Sphere { radius } => *radius,
-            Solid::Cuboid { half_extents } => half_extents.z,
-            _ => 0.5,
-        };
-        let ground = self.world.ground().height_at(at.x, at.y);
-        let motion = Motion { rotation, ..Motion::at(at.extend(ground + half)) };
-        self.world.place_prop(prop, motion).expect("a place near the character");
+    fn lay(&mut self, loose: Loose, at: Vec2, rotation: Quat) {
+        let height = self.world.ground().height_at(at.x, at.y) + loose.half_metres;
+        let motion = Motion { rotation, ..Motion::at(at.extend(height)) };
+        self.world.place_prop(loose.prop, motion).expect("a place near the character");
     }
 
     fn collect_contacts(&mut self) {

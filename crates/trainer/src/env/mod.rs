@@ -30,7 +30,7 @@ pub use env::{Env, EnvContext, Episode};
 pub use exploration::ExplorationConfig;
 pub use graph::{GraphNode, TrainingGraph};
 pub use meetings::MeetingsConfig;
-pub(crate) use meetings::WALK;
+pub(crate) use meetings::{MET, WALK};
 pub use normalisers::Normalisers;
 pub use randomisation::RandomisationConfig;
 pub use reset::{HandOver, HandOverConfig, ResetConfig};

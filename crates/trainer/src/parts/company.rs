@@ -5,7 +5,7 @@ use std::sync::Arc;
 use anyhow::{Context, Result, ensure};
 use policy_core::{CharacterPack, Controller, ControllerConfig};
 
-use crate::env::WALK;
+use crate::env::{MET, WALK};
 use crate::pack::{PackPlan, TrainedSkill, bind};
 use crate::recipe::Recipe;
 use crate::workspace::Workspace;
@@ -13,16 +13,13 @@ use crate::workspace::Workspace;
 /// Plan of the pack, in the folder of recipes.
 pub(super) const PLAN: &str = "pack/humanoid.toml";
 
-/// Where the other characters stand.
-const IDLE: &str = "idle";
-
 impl Workspace {
     /// What drives the characters that are met in a recipe's phases; `None` where nothing is met.
     pub(super) fn company(&self, recipe: &Recipe) -> Result<Option<Controller>> {
-        if recipe.phases.iter().all(|phase| phase.environment.meetings.share == 0.0) {
+        if !recipe.meets_others() {
             return Ok(None);
         }
-        let plan = PackPlan::load(&self.recipes.join(PLAN))?.only(|name| name == IDLE || name == WALK);
+        let plan = PackPlan::load(&self.recipes.join(PLAN))?.only(|name| MET.contains(&name));
         let pack = self.pack_of(&plan, "environment.meetings")?;
         let start = pack.graph().node_named(WALK);
         let start = start.with_context(|| format!("expected a node {WALK} in {PLAN}, found none"))?;

@@ -1,4 +1,4 @@
-//! Meetings as they are arranged: who comes from where, how fast, and how heavy.
+//! How meetings begin: where the other character, the ball and the crate start, and how fast they move.
 
 use std::f32::consts::PI;
 
@@ -8,6 +8,7 @@ use policy_core::contract::WALKING_START_MPS;
 use policy_core::{CharacterState, Heading};
 use random::Rng;
 
+use super::super::env::GRAVITY;
 use super::Company;
 
 /// Shares of meetings with a character and with a ball; the rest are with a crate.
@@ -39,9 +40,6 @@ const HIT_METRES: [f32; 2] = [0.8, 1.3];
 pub(super) const CRATE_KG: [f32; 2] = [1.0, 20.0];
 pub(super) const CRATE_HALF_METRES: [f32; 2] = [0.12, 0.28];
 const CRATE_AHEAD_METRES: [f32; 2] = [0.9, 1.8];
-
-/// Standard gravity, metres per second squared.
-const GRAVITY: f32 = 9.81;
 
 /// So much faster than this, metres per second, and it is the way that counts, not the direction it faces.
 const GOES_MPS: f32 = 0.3;
@@ -95,7 +93,7 @@ impl Company {
         let start = hit + (THROW_METRES * Vec2::from_angle(rng.angle())).extend(0.0);
         let rise = Vec3::Z * (0.5 * GRAVITY * secs);
         let motion = Motion::at(start).moving((hit - start) / secs + rise);
-        self.world.place_prop(self.ball, motion).expect("a place near the character");
+        self.world.place_prop(self.ball.prop, motion).expect("a place near the character");
     }
 
     /// Lays the crate down ahead of the own character.

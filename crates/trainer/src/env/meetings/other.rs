@@ -9,6 +9,9 @@ use super::super::command::DT_SECS;
 /// The node at which it walks.
 pub(crate) const WALK: &str = "walk";
 
+/// The gaits that its controller has.
+pub(crate) const MET: [&str; 2] = ["idle", WALK];
+
 /// How far ahead of it its target lies, metres.
 const TARGET_METRES: f32 = 5.0;
 

@@ -28,8 +28,8 @@ fn touching(company: &Company) -> [bool; 3] {
                 continue;
             }
             touching[0] |= matches!(other, Part::Body(owner, _) if owner != company.own);
-            touching[1] |= other == Part::Prop(company.ball);
-            touching[2] |= other == Part::Prop(company.block);
+            touching[1] |= other == Part::Prop(company.ball.prop);
+            touching[2] |= other == Part::Prop(company.block.prop);
         }
     }
     touching
