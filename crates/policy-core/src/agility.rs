@@ -67,7 +67,7 @@ impl Urgency {
     ) -> Self {
         let crosses = graph.edge_at(position).is_some_and(|edge| edge.transit);
         let node = position.as_node();
-        let arrived = position == goal || node.is_some() && node == goal.as_node();
+        let arrived = position.is_same_place(goal);
         let stands = node.is_some_and(|node| graph.node(node).stands());
         let steady = |can_be: bool, off: f32| if arrived && can_be { 1.0 - off } else { 0.0 };
         let now = match (target, moving_mps(graph, position)) {

@@ -108,9 +108,16 @@ impl GraphPosition {
             None => None,
         }
     }
-}
 
-impl GraphPosition {
+    /// Whether both are one node, or one place on one edge, whichever end it is counted from.
+    #[must_use]
+    pub fn is_same_place(self, other: Self) -> bool {
+        match self.as_node() {
+            Some(node) => other.as_node() == Some(node),
+            None => other.along(self.from, self.to) == Some(self.t),
+        }
+    }
+
     /// Blend of the policies at this position.
     #[must_use]
     pub fn blend(self) -> Blend {
