@@ -84,7 +84,11 @@ impl Urgency {
             }
             (Some(target), Some(speed)) => {
                 let off = off_course(state, target, speed);
-                Self { to_move: off, as_asked: steady(true, off), ..Self::default() }
+                Self {
+                    to_move: off,
+                    as_asked: steady(!mostly_stands(graph, position), off),
+                    ..Self::default()
+                }
             }
             (Some(_), None) => Self::default(),
         };
@@ -98,6 +102,12 @@ impl Urgency {
             as_asked: follow(self.as_asked, now.as_asked, STEADY_SECS),
         }
     }
+}
+
+/// Whether a position is nearer to a gait that stands than to one that moves. A steady variant has learned to go straight at the speed of its
+/// gait, and goes aside where standing has the greater share.
+fn mostly_stands(graph: &PolicyGraph, position: GraphPosition) -> bool {
+    graph.node(position.nearest_node()).stands()
 }
 
 /// Speed that a position on the graph asks for, metres per second, where its gaits have one and it does not stand: between two gaits that move,
