@@ -8,6 +8,7 @@
 
 use glam::Vec2;
 
+use crate::footing::steepest;
 use crate::graph::PolicyGraph;
 use crate::heading::Heading;
 use crate::path::GraphPosition;
@@ -35,6 +36,10 @@ const STEADY_SECS: [f32; 2] = [1.6, 0.06];
 /// From where to where on the way to steadiness the steady variant comes in. First the gait itself brakes or gathers speed.
 const COMES_IN: [f32; 2] = [0.35, 1.0];
 
+/// Rises and drops below the feet between which the steady variants leave off, metres: they stand and go straight on level ground alone. Feet
+/// that stand apart on a slope of 5 degrees differ by the second.
+const OFF_LEVEL: [f32; 2] = [0.002, 0.008];
+
 /// How far a character is from what it is asked to do, and how long it has done it, each in [0, 1].
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct Urgency {
@@ -56,6 +61,8 @@ pub(crate) fn steady_share(steadiness: f32) -> f32 {
 impl Urgency {
     /// What it is after a tick of `dt` seconds at a position on the graph, on the way to another.
     ///
+    /// Nothing is steady where the ground rises or drops below the feet.
+    ///
     /// A speed beyond the one asked for is no error: the way back to a slower gait brakes. Gaits without a speed ask for nothing, and on
     /// an edge that is only crossed the body stands up, or goes down, before it goes anywhere.
     pub(crate) fn next(
@@ -69,7 +76,8 @@ impl Urgency {
         let node = position.as_node();
         let arrived = position.is_same_place(goal);
         let stands = node.is_some_and(|node| graph.node(node).stands());
-        let steady = |can_be: bool, off: f32| if arrived && can_be { 1.0 - off } else { 0.0 };
+        let off_level = within(steepest(state), OFF_LEVEL);
+        let steady = |can_be: bool, off: f32| if arrived && can_be { 1.0 - off.max(off_level) } else { 0.0 };
         let now = match (target, moving_mps(graph, position)) {
             _ if crosses => Self::default(),
             (None, _) => {

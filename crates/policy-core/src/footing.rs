@@ -13,6 +13,10 @@ const CROSS_SECS: [f32; 2] = [0.1, 3.0];
 
 /// How uneven the ground is, in [0, 1], after a tick of `dt` seconds.
 pub(crate) fn next_unevenness(before: f32, state: &CharacterState, dt: f32) -> f32 {
-    let steepest = state.ground_rises.iter().fold(0.0, |most: f32, rise| most.max(libm::fabsf(*rise)));
-    crossed(before, within(steepest, ROUGH_RISES), CROSS_SECS, dt)
+    crossed(before, within(steepest(state), ROUGH_RISES), CROSS_SECS, dt)
+}
+
+/// The greatest rise or drop that a character senses, metres.
+pub(crate) fn steepest(state: &CharacterState) -> f32 {
+    state.ground_rises.iter().fold(0.0, |most: f32, rise| most.max(libm::fabsf(*rise)))
 }

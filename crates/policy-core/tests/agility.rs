@@ -157,6 +157,10 @@ fn a_stand_that_has_come_to_rest_is_left_to_its_steady_variant_until_anything_is
     assert!(rest(&walking(0.6), &nothing, 2) < 0.4, "a push");
     assert_eq!(rest(&walking(0.6), &nothing, 1), 0.0);
     assert_eq!(rest(&still, &nothing, 50), 1.0);
+    let mut on_a_slope = walking(0.0);
+    on_a_slope.ground_rises[Skeleton::humanoid().feet()[0].index()] = 0.008;
+    assert_eq!(rest(&on_a_slope, &nothing, 3), 0.0, "the ground is not level");
+    assert_eq!(rest(&still, &nothing, 50), 1.0);
     assert_eq!(rest(&still, &towards(10.0 * Vec2::X), 3), 0.0, "it is to walk");
 }
 
