@@ -112,10 +112,11 @@ impl Urgency {
     }
 }
 
-/// Whether a position is nearer to a gait that stands than to one that moves. A steady variant has learned to go straight at the speed of its
-/// gait, and goes aside where standing has the greater share.
+/// Whether more than half of a position is a gait that stands. A steady variant has learned to go straight at the speed of its gait, and goes
+/// aside there.
 fn mostly_stands(graph: &PolicyGraph, position: GraphPosition) -> bool {
-    graph.node(position.nearest_node()).stands()
+    let standing = |node, share: f32| if graph.node(node).stands() { share } else { 0.0 };
+    standing(position.from, 1.0 - position.t) + standing(position.to, position.t) > 0.5
 }
 
 /// Speed that a position on the graph asks for, metres per second, where its gaits have one and it does not stand: between two gaits that move,
