@@ -44,6 +44,7 @@ pub fn pack(model: &Model, mjcf: &str) -> CharacterPack {
     let skill = SkillEntry {
         minimum_speed_mps: 0.0,
         maximum_speed_mps: None,
+        clock_seconds: None,
         name: "bow".into(),
         policy: "bow".into(),
         entry: vec!["rest".into(), "trot".into()],

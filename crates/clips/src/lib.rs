@@ -144,6 +144,22 @@ impl Clip {
         excerpt.checked()
     }
 
+    /// The clip and then its last pose, at rest for so many seconds: what it ends in is to be reached and kept. It does not loop.
+    ///
+    /// # Errors
+    /// When the seconds are negative or not finite, or the clip becomes longer than one may be.
+    pub fn held(&self, seconds: f32) -> Result<Self, ClipError> {
+        let mut held = Self { looping: false, ..self.clone() };
+        if seconds != 0.0 {
+            // A clip that was checked has frames.
+            let last = held.times.len() - 1;
+            held.times.push(held.times[last] + seconds);
+            held.root_positions.push(held.root_positions[last]);
+            held.local_rotations.push(held.local_rotations[last].clone());
+        }
+        held.checked()
+    }
+
     /// How far one cycle moves the root, horizontally.
     #[must_use]
     pub fn cycle_offset(&self) -> Vec3 {

@@ -226,6 +226,21 @@ fn a_clip_backwards_goes_back_and_a_pace_changes_its_time_alone() {
 }
 
 #[test]
+fn a_clip_that_is_held_ends_at_rest_and_no_longer_loops() {
+    let walk = swinging();
+    let held = walk.held(0.5).unwrap();
+    assert!(walk.looping && !held.looping && (held.duration() - walk.duration() - 0.5).abs() < 1e-5);
+    let (last, rotations) = held.sample(walk.duration());
+    for seconds in [0.1, 0.5] {
+        assert_eq!(held.sample(walk.duration() + seconds), (last, rotations.clone()));
+    }
+    assert_eq!(walk.held(0.0).unwrap(), Clip { looping: false, ..walk.clone() });
+    for seconds in [-0.1, f32::NAN, 700.0] {
+        assert!(walk.held(seconds).is_err(), "{seconds}");
+    }
+}
+
+#[test]
 fn side_steps_go_left_in_a_cycle_and_plant_their_feet() {
     let clip = still(2).side_steps(0.5).unwrap();
     assert!(clip.looping && (clip.cycle_offset().y / clip.duration() - 0.5).abs() < 1e-4);

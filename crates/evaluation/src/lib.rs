@@ -44,6 +44,6 @@ pub use push::measure_push;
 pub use report::{Evaluation, ModeReport, PathReport, PushReport, SpeedPoint, evaluate};
 pub use rig::Rig;
 pub use section::Section;
-pub use skills::{RateReport, measure_get_up, measure_skill, watch_skill};
+pub use skills::{RateReport, SkillReport, measure_get_up, measure_skill, watch_skill};
 pub use table::table;
 pub use upright::{UprightReport, measure_upright};

@@ -11,8 +11,8 @@ use serde::Serialize;
 
 use super::{
     Effort, EvaluationError, LayerReport, MotionReport, PlayerReport, Progress, RateReport, Rig, Section,
-    UprightReport, measure_coordinates, measure_get_up, measure_layers, measure_push, measure_skill,
-    measure_sweep, measure_upright, pose_error, watch,
+    SkillReport, UprightReport, measure_coordinates, measure_get_up, measure_layers, measure_push,
+    measure_skill, measure_sweep, measure_upright, pose_error, watch,
 };
 use crate::response::commanded_mps;
 
@@ -32,7 +32,7 @@ pub struct Evaluation {
     pub roll: Option<RateReport>,
     /// By name: all episodic skills but the one that raises a fallen character.
     #[serde(skip_serializing_if = "BTreeMap::is_empty")]
-    pub skills: BTreeMap<String, RateReport>,
+    pub skills: BTreeMap<String, SkillReport>,
     /// By policy: who is still up after 10 s of turns.
     #[serde(skip_serializing_if = "BTreeMap::is_empty")]
     pub upright: BTreeMap<String, UprightReport>,
@@ -241,7 +241,7 @@ impl Evaluation {
             let report = measure_skill(model, pack, id, effort.drops);
             self.skills.insert(skill.name.clone(), report);
         }
-        self.roll = self.skills.get("roll").copied();
+        self.roll = self.skills.get("roll").map(|skill| skill.rate);
     }
 }
 

@@ -4,15 +4,14 @@ use std::sync::Arc;
 
 use glam::Vec2;
 use physics::{Model, PhysicsCharacter};
-use policy_core::training::TARGET_RANGE_METRES;
-use policy_core::{CharacterPack, CharacterState, Command, Goal, SkillEnd, SkillId};
+use policy_core::{CharacterPack, CharacterState, Command, SkillEnd, SkillId};
 use random::Rng;
 use random::limp::drop_limp;
 use rayon::prelude::*;
 use serde::Serialize;
 
 use super::eval_character::{EvalCharacter, SETTLE_SECS};
-use crate::trial::TICK_SECS;
+use crate::trial::{TICK_SECS, median};
 
 /// Seconds within which a dropped character must stand.
 const GET_UP_SECS: f32 = 5.0;
@@ -47,6 +46,41 @@ impl RateReport {
             recognised: ended.len() as f32 / count,
             seconds: ended.iter().sum::<f32>() / ended.len().max(1) as f32,
         }
+    }
+}
+
+/// Tries of an episodic skill, and how high the feet go while it runs: medians over the tries.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
+pub struct SkillReport {
+    /// How many went well.
+    #[serde(flatten)]
+    pub rate: RateReport,
+    /// Greatest height of the lowest point of a foot above the ground, metres: how high it kicks.
+    pub foot_m: Option<f32>,
+    /// The same of the lower foot: how high it jumps.
+    pub jump_m: Option<f32>,
+    /// Seconds in which both feet are off the ground.
+    pub air_s: Option<f32>,
+}
+
+/// A foot whose lowest point is higher is off the ground, metres.
+const OFF_GROUND_METRES: f32 = 0.01;
+
+/// What the feet do while a skill runs.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+struct Feet {
+    highest: f32,
+    lower: f32,
+    air_secs: f32,
+}
+
+impl Feet {
+    /// A tick later, with the lowest points of the feet so high above the ground.
+    fn after(self, heights: impl Iterator<Item = f32>) -> Self {
+        let [low, high] = heights.fold([f32::INFINITY, 0.0], |[low, high], h| [h.min(low), h.max(high)]);
+        let low = if low.is_finite() { low } else { 0.0 };
+        let air_secs = self.air_secs + if low > OFF_GROUND_METRES { TICK_SECS } else { 0.0 };
+        Self { highest: self.highest.max(high), lower: self.lower.max(low), air_secs }
     }
 }
 
@@ -104,8 +138,6 @@ pub fn watch_skill(
 ) -> Vec<CharacterState> {
     let back = pack.skills()[skill.index()].returns_to;
     let mut eval = EvalCharacter::new(model, pack, &pack.graph().node(back).name);
-    let ahead = |eval: &EvalCharacter| Some(eval.position() + Vec2::new(TARGET_RANGE_METRES, 0.0));
-    let mut command = Command { goal: Goal::Node(back), ..Command::default() };
     if pack.recovery() == Some(skill) {
         let body = pack.skeleton().body_named(FACING).unwrap_or_else(|| pack.skeleton().root());
         let sign = if on_its_face { -1.0 } else { 1.0 };
@@ -116,35 +148,42 @@ pub fn watch_skill(
         }
     } else {
         for _ in 0..(SETTLE_SECS / TICK_SECS) as u32 {
-            command.target = ahead(&eval);
+            let command = eval.ahead(back);
             eval.tick(&command);
         }
     }
-    command.skill = Some(skill);
+    let mut request = Some(skill);
     let mut states = vec![eval.state.clone()];
     let mut after = 0.0;
     while after < 0.5 && states.len() < 300 {
-        command.target = if pack.recovery() == Some(skill) { None } else { ahead(&eval) };
+        let ahead = eval.ahead(back).target.filter(|_| pack.recovery() != Some(skill));
+        let command = Command { target: ahead, skill: request.take(), ..eval.ahead(back) };
         if !eval.tick(&command) {
             break;
         }
-        command.skill = None;
         states.push(eval.state.clone());
         after = if eval.controller.report().skill.is_some() { 0.0 } else { after + TICK_SECS };
     }
     states
 }
 
-/// Tries of an episodic skill out of the node it returns to, with a target ahead, that end within 3 s as they are meant to, and after
-/// which the character is still up a second later.
+/// Tries of an episodic skill out of the node it returns to, straight ahead or standing, that end within 3 s as they are meant to, and
+/// after which the character is still up a second later.
 ///
 /// # Panics
 /// When the pack has no such skill.
 #[must_use]
-pub fn measure_skill(model: &Model, pack: &Arc<CharacterPack>, skill: SkillId, tries: usize) -> RateReport {
+pub fn measure_skill(model: &Model, pack: &Arc<CharacterPack>, skill: SkillId, tries: usize) -> SkillReport {
     let tries: Vec<_> =
         (0..tries).into_par_iter().map(|i| comes_back(model, pack, skill, i as u64)).collect();
-    RateReport::of(&tries)
+    let rates: Vec<_> = tries.iter().map(|(well, ended, _)| (*well, *ended)).collect();
+    let of = |number: fn(&Feet) -> f32| median(tries.iter().map(|(_, _, feet)| Some(number(feet))));
+    SkillReport {
+        rate: RateReport::of(&rates),
+        foot_m: of(|feet| feet.highest),
+        jump_m: of(|feet| feet.lower),
+        air_s: of(|feet| feet.air_secs),
+    }
 }
 
 /// True for the end that a skill is meant to have: by its discriminator, or by its time where it has none.
@@ -153,24 +192,44 @@ pub(crate) fn ended_well(pack: &CharacterPack, skill: SkillId, end: SkillEnd) ->
     end == if by_time { SkillEnd::TimeLimit } else { SkillEnd::Recognised }
 }
 
-fn comes_back(model: &Model, pack: &Arc<CharacterPack>, skill: SkillId, seed: u64) -> (bool, Option<f32>) {
+fn comes_back(
+    model: &Model,
+    pack: &Arc<CharacterPack>,
+    skill: SkillId,
+    seed: u64,
+) -> (bool, Option<f32>, Feet) {
     let back = pack.skills()[skill.index()].returns_to;
     let mut eval = EvalCharacter::new(model, pack, &pack.graph().node(back).name);
     let mut rng = Rng::new(seed, 13);
     let start = ((SETTLE_SECS + rng.range(0.0, 1.0)) / TICK_SECS) as u32;
-    let mut ended = None;
+    let (mut ended, mut feet) = (None, Feet::default());
     for tick in 0..start + ((SKILL_SECS + 1.0) / TICK_SECS) as u32 {
-        let target = Some(eval.position() + Vec2::new(TARGET_RANGE_METRES, 0.0));
-        let skill = (tick == start).then_some(skill);
-        let command = Command { target, goal: Goal::Node(back), skill, ..Command::default() };
+        let command = Command { skill: (tick == start).then_some(skill), ..eval.ahead(back) };
         if !eval.tick(&command) || (tick < start && eval.controller.report().fallen) {
-            return (false, ended);
+            return (false, ended, feet);
         }
-        if let Some((skill, end)) = eval.controller.report().skill_ended
+        let report = eval.controller.report();
+        if report.skill.is_some() {
+            feet = feet.after(pack.skeleton().feet().iter().map(|foot| eval.character.clearance_of(*foot)));
+        }
+        if let Some((skill, end)) = report.skill_ended
             && ended_well(pack, skill, end)
         {
             ended = Some((tick - start) as f32 * TICK_SECS);
         }
     }
-    (ended.is_some_and(|secs| secs <= SKILL_SECS) && eval.pelvis_height() > 0.65, ended)
+    (ended.is_some_and(|secs| secs <= SKILL_SECS) && eval.pelvis_height() > 0.65, ended, feet)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_kick_lifts_one_foot_and_a_jump_both() {
+        let kick = [[0.0, 0.0], [0.0, 0.9], [0.02, 0.5], [0.0, 0.0]];
+        let feet = kick.iter().fold(Feet::default(), |feet, heights| feet.after(heights.iter().copied()));
+        assert_eq!(feet, Feet { highest: 0.9, lower: 0.02, air_secs: TICK_SECS });
+        assert_eq!(Feet::default().after(std::iter::empty()), Feet::default(), "a character without feet");
+    }
 }

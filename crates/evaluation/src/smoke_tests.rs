@@ -80,6 +80,7 @@ fn pack(falls: bool) -> Arc<CharacterPack> {
     let roll = SkillEntry {
         minimum_speed_mps: 0.0,
         maximum_speed_mps: None,
+        clock_seconds: None,
         name: "roll".into(),
         policy: "roll".into(),
         entry: Vec::new(),

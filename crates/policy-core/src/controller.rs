@@ -18,7 +18,7 @@ use crate::pack::CharacterPack;
 use crate::path::GraphPosition;
 use crate::report::{StateFault, TickReport};
 use crate::scorer::Scorer;
-use crate::skill::SkillEnd;
+use crate::skill::{SkillEnd, clock_input};
 use crate::state::{CharacterState, JointTargets};
 use crate::strafe::{face_in_observation, strafing_share};
 use crate::variants::{Shares, with_variants};
@@ -291,13 +291,22 @@ impl Controller {
     fn observe(&mut self, state: &CharacterState, command: &Command, dt: f32) {
         let strafing = strafing_share(self.pack.graph(), &self.state.report.blend);
         let target_world = self.steered(state, self.target(state, command), strafing, dt);
-        let skeleton = self.pack.skeleton();
+        let (skeleton, clock) = (self.pack.skeleton(), self.clock());
         let (observation, target) = self.input.split_at_mut(skeleton.observation_len());
         observe_into(skeleton, state, observation);
         face_in_observation(skeleton, state, (command.facing, strafing), observation);
         self.pack.tensors().observation_normaliser.normalise_in_place(observation);
         self.state.report.target = target_world.map_or([0.0; 2], |target| target_input(state, target));
-        target.copy_from_slice(&self.state.report.target);
+        target.copy_from_slice(&clock.unwrap_or(self.state.report.target));
+    }
+
+    /// What the policy of a timed skill sees in place of the target, while that policy acts.
+    fn clock(&self) -> Option<[f32; 2]> {
+        let report = &self.state.report;
+        let progress = report.skill?;
+        let skill = &self.pack.skills()[progress.skill.index()];
+        let acts = report.blend == Blend::single(skill.policy);
+        skill.clock_seconds.filter(|_| acts).map(|seconds| clock_input(progress.seconds, seconds))
     }
 }
 

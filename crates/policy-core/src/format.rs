@@ -250,6 +250,9 @@ pub struct SkillEntry {
     /// Speed above which it does not start, metres per second; `None` for no such condition.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub maximum_speed_mps: Option<f32>,
+    /// Seconds of the clock that the policy sees in place of the target; `None` for a policy that sees the target.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub clock_seconds: Option<f32>,
     /// Name of the policy that runs afterwards.
     pub returns_to: String,
     /// Name of the discriminator that ends it; none: the time limit alone does.

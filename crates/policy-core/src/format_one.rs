@@ -140,6 +140,7 @@ impl SkillOne {
             entry: self.entry,
             minimum_speed_mps: 0.0,
             maximum_speed_mps: None,
+            clock_seconds: None,
             returns_to: self.returns_to,
             discriminator: self.discriminator,
             end,

@@ -185,6 +185,7 @@ pub(crate) fn skill(entry: &SkillEntry, names: &[&str], m: &Manifest) -> Result<
         entry: entry.entry.iter().map(|n| find_node(field(), n, names)).collect::<Result<_, _>>()?,
         minimum_speed_mps: minimum_speed(entry, field())?,
         maximum_speed_mps: maximum_speed(entry, field())?,
+        clock_seconds: clock_seconds(entry, field())?,
         returns_to: find_node(field(), &entry.returns_to, names)?,
         discriminator: match &entry.discriminator {
             None => None,
@@ -213,6 +214,16 @@ fn maximum_speed(entry: &SkillEntry, owner: String) -> Result<f32, PackError> {
         Ok(found)
     } else {
         Err(PackError::Number { field, owner, expected, found })
+    }
+}
+
+fn clock_seconds(entry: &SkillEntry, owner: String) -> Result<Option<f32>, PackError> {
+    let (field, expected) = ("clock_seconds", "above 0, up to 600");
+    match entry.clock_seconds {
+        Some(found) if !(f32::MIN_POSITIVE..=600.0).contains(&found) => {
+            Err(PackError::Number { field, owner, expected, found })
+        }
+        clock => Ok(clock),
     }
 }
 

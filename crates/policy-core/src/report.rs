@@ -27,7 +27,7 @@ pub struct TickReport {
     pub blend: Blend,
     /// What the evaluation took.
     pub evaluation: Evaluation,
-    /// The target as the policy saw it; see [`target_input`](crate::target_input).
+    /// The target as the policy saw it; see [`target_input`](crate::target_input). The policy of a timed skill sees a clock instead.
     pub target: [f32; TARGET_LEN],
     /// The skill that runs.
     pub skill: Option<SkillProgress>,

@@ -5,6 +5,7 @@ use alloc::string::String;
 use alloc::vec::Vec;
 
 use crate::ids::{DiscriminatorId, NodeId, PolicyId, SkillId};
+use crate::observation::{TARGET_LEN, TARGET_RANGE_METRES};
 
 /// When an episodic skill ends.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -38,6 +39,8 @@ pub struct Skill {
     /// Horizontal speed of the root above which it does not start, metres per second: a pending skill waits until the character is
     /// slow enough. Infinite for no such condition.
     pub maximum_speed_mps: f32,
+    /// Seconds in which the clock of a timed skill runs once ([`clock_input`]); `None` for a skill that sees the target.
+    pub clock_seconds: Option<f32>,
     /// Node that runs afterwards.
     pub returns_to: NodeId,
     /// The discriminator that ends it; without one the time limit does.
@@ -52,6 +55,20 @@ impl Skill {
     pub fn starts_from(&self, node: NodeId) -> bool {
         self.entry.is_empty() || self.entry.contains(&node)
     }
+}
+
+/// What the policy of a timed skill sees in place of the target: the hand of a clock that goes half-way round, from straight ahead
+/// over the left to straight behind, in `clock_seconds`. There it stays. Its length is that of a target that is far away.
+///
+/// A kick needs no target. What it needs is the time: without it the policy has to tell a leg that is about to rise from one that
+/// comes down by the pose alone.
+#[must_use]
+pub fn clock_input(seconds: f32, clock_seconds: f32) -> [f32; TARGET_LEN] {
+    let share = if clock_seconds > 0.0 { (seconds / clock_seconds).clamp(0.0, 1.0) } else { 1.0 };
+    let share = if share.is_finite() { share } else { 1.0 };
+    let (sin, cos) = libm::sincosf(core::f32::consts::PI * share);
+    let length = 0.5 * TARGET_RANGE_METRES;
+    [length * cos, length * sin]
 }
 
 /// Why an episodic skill ended.
@@ -144,6 +161,19 @@ mod tests {
     fn run(scores: &[f32]) -> Option<(usize, SkillEnd)> {
         let mut progress = SkillProgress::start(SkillId::new(0));
         scores.iter().enumerate().find_map(|(i, s)| progress.tick(&END, Some(*s), UP, DT).map(|end| (i, end)))
+    }
+
+    #[test]
+    fn a_clock_goes_half_way_round_and_stays_there() {
+        let near = |is: [f32; 2], wanted: [f32; 2]| {
+            assert!((is[0] - wanted[0]).abs() < 1e-5 && (is[1] - wanted[1]).abs() < 1e-5, "{is:?}");
+        };
+        near(clock_input(0.0, 1.5), [2.5, 0.0]);
+        near(clock_input(0.75, 1.5), [0.0, 2.5]);
+        near(clock_input(1.5, 1.5), [-2.5, 0.0]);
+        near(clock_input(9.0, 1.5), [-2.5, 0.0]);
+        near(clock_input(f32::NAN, 1.5), [-2.5, 0.0]);
+        near(clock_input(1.0, 0.0), [-2.5, 0.0]);
     }
 
     #[test]

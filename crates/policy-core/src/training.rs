@@ -16,6 +16,6 @@ pub use crate::pack::PackTensors;
 pub use crate::path::Path;
 pub use crate::route::RouteTable;
 pub use crate::skeleton::{MAX_SKELETON_PARTS, Roles, SkeletonBody, SkeletonError, SkeletonJoint};
-pub use crate::skill::{EndCondition, SkillProgress};
+pub use crate::skill::{EndCondition, SkillProgress, clock_input};
 pub use crate::steering::SteeringState;
 pub use crate::strafe::{face_in_observation, strafing_share};

@@ -143,6 +143,11 @@ fn fields_that_do_not_fit_together_are_named() {
     assert!(
         error(&format!("{tracking}environment.reset.pre_failure_share = 0.1")).contains("pre_failure_share")
     );
+    let clock = "environment.command.clock_seconds = 1.5\n";
+    assert!(error(clock).contains("clock_seconds"), "a clock without a clip that is tracked");
+    assert!(error_together(clock).contains("clock_seconds"));
+    assert!(parse(&format!("{GOOD}{tracking}{clock}")).is_ok());
+    assert!(error(&format!("{tracking}{clock}environment.reset.limp_share = 0.1")).contains("limp_share"));
     let hand_over = "environment.reset.hand_over = [{ skill = \"get_up\", share = 0.1 }]";
     assert!(parse(&format!("{}{hand_over}\n", together())).is_ok());
     assert!(error(hand_over).contains("hand_over"));

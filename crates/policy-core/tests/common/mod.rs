@@ -123,6 +123,7 @@ pub fn manifest() -> Manifest {
         entry: entry.iter().map(|n| (*n).into()).collect(),
         minimum_speed_mps: 0.0,
         maximum_speed_mps: None,
+        clock_seconds: None,
         returns_to: "walk".into(),
         discriminator: Some("walk".into()),
         end,

@@ -123,7 +123,7 @@ fn report_skills(model: &Model, pack: &Arc<CharacterPack>, which: &str, tries: u
         let id = SkillId::new(index);
         let report = match pack.recovery() == Some(id) {
             true => measure_get_up(model, pack, &skill.name, tries).unwrap_or_default(),
-            false => measure_skill(model, pack, id, tries),
+            false => measure_skill(model, pack, id, tries).rate,
         };
         say(format_args!(
             "{} with {which} discriminators: {:.1} % succeed, {:.1} % are recognised, after {:.2} s",

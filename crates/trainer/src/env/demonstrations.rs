@@ -127,6 +127,12 @@ impl Demonstrations {
         (index < motion.poses.len()).then_some(ClipPhase { index, ..phase })
     }
 
+    /// Seconds from the beginning of the clip to a phase.
+    #[must_use]
+    pub fn seconds_at(&self, phase: ClipPhase) -> f32 {
+        (phase.index as f64 * self.sources[phase.source].motion.dt_secs) as f32
+    }
+
     /// True when the clip of that phase begins anew where it ends.
     #[must_use]
     pub fn loops(&self, phase: ClipPhase) -> bool {

@@ -28,7 +28,8 @@ impl Env {
         let facing = (self.command.facing(), context.graph.strafe(self.command.position).0);
         face_in_observation(context.skeleton, &self.state, facing, observation);
         context.normalisers.observation.normalise_in_place(observation);
-        target.copy_from_slice(&target_input(&self.state, self.command.seen_target));
+        let clock = self.clock(context);
+        target.copy_from_slice(&clock.unwrap_or_else(|| target_input(&self.state, self.command.seen_target)));
         let (position, intent) = rest.split_at_mut(context.graph.position_len());
         context.graph.position_into(self.command.position, position);
         self.command.intent_into(intent);

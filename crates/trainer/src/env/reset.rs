@@ -114,7 +114,9 @@ impl Env {
         self.command.go_on(context.graph, at.0, moves);
         // Of skills trained together only trackers track clips.
         let others = config.reward.tracking_share > 0.0 && !self.tracker;
-        if limp || standing || config.reward.tracking_weight == 0.0 || others {
+        if standing && config.command.clock_seconds > 0.0 {
+            self.tracking = Some(self.track_from_the_beginning(context));
+        } else if limp || standing || config.reward.tracking_weight == 0.0 || others {
             self.tracking = None;
         }
     }
@@ -161,9 +163,7 @@ impl Env {
         let nodes = context.demonstrations.len();
         let node = match context.start_demonstrations {
             Some(other) if self.rng.chance(start.other_clips_share) => {
-                let clips = own_clips(context);
-                let beginning = clips.sample_beginning(&mut self.rng);
-                self.tracking = Some(Tracking::into_clips(nodes - 1, beginning, clips));
+                self.tracking = Some(self.track_from_the_beginning(context));
                 return other.sample_reference_state(&mut self.rng);
             }
             _ if self.rng.chance(start.any_node_share) => self.rng.index(nodes),
@@ -176,6 +176,13 @@ impl Env {
         let start = context.demonstrations[node].sample_reference_state(&mut self.rng);
         self.tracking = (self.tracker || node == nodes - 1).then(|| Tracking::at_once(node, start.phase));
         start
+    }
+
+    /// From elsewhere into the clips of the skill that learns.
+    fn track_from_the_beginning(&mut self, context: &EnvContext<'_>) -> Tracking {
+        let clips = own_clips(context);
+        let beginning = clips.sample_beginning(&mut self.rng);
+        Tracking::into_clips(context.demonstrations.len() - 1, beginning, clips)
     }
 
     /// Sets the character down in a random heading, lifted until nothing is in the ground.

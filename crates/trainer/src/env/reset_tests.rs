@@ -49,3 +49,50 @@ fn a_standing_start_is_upright_and_moves_ahead() {
     assert!(most <= WALKING_START_MPS && most > 0.7 * WALKING_START_MPS, "{speeds:?}");
     assert!(speeds.iter().any(|speed| *speed < 0.3 * WALKING_START_MPS), "{speeds:?}");
 }
+
+#[test]
+fn a_timed_skill_sees_the_second_of_its_clip_in_every_start() {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../assets/humanoid.xml");
+    let model = Model::load(path).unwrap();
+    let clip = still(46);
+    let normalisers = Normalisers::from_clips(std::slice::from_ref(&clip), &model).unwrap();
+    let clips = Demonstrations::from_clips(&[(clip, 1.0, false)], &model, &normalisers.frame).unwrap();
+    let mut config = EnvironmentConfig::default();
+    (config.command.clock_seconds, config.reward.tracking_weight) = (1.5, 0.9);
+    (config.reset.standing_share, config.reset.other_clips_share) = (0.3, 0.3);
+    let context = EnvContext {
+        config: &config,
+        skeleton: model.skeleton(),
+        graph: &TrainingGraph::alone(vec![GraphNode::new("kick", &config, 1.0)], 0).unwrap(),
+        demonstrations: &[&clips],
+        start_demonstrations: Some(&clips),
+        hand_over: &[],
+        normalisers: &normalisers,
+        heights: &TerminationHeights::new(&config.termination, model.skeleton()).unwrap(),
+        pushed: &[],
+        company: None,
+    };
+    let mut env = Env::new(&model, &context, Rng::new(6, 0));
+    let mut input = vec![0.0; context.critic_inputs()];
+    let at = model.skeleton().observation_len();
+    // How far the hand of the clock has gone, in [0, 1].
+    let mut share = |env: &Env| {
+        env.observe_into(&context, &mut input);
+        let [x, y] = [input[at], input[at + 1]];
+        assert!((x.hypot(y) - 2.5).abs() < 1e-3, "{x} {y}");
+        y.atan2(x) / std::f32::consts::PI
+    };
+    let mut starts = Vec::new();
+    for _ in 0..40 {
+        env.reset(&context, false);
+        let before = share(&env);
+        starts.push(before);
+        env.track_clip(&context);
+        if env.tracks() {
+            assert!((share(&env) - before - 1.0 / 45.0).abs() < 1e-3, "a tick of 1.5 s");
+        }
+    }
+    let early = starts.iter().filter(|share| **share < 0.1).count();
+    assert!((18..=32).contains(&early), "half from elsewhere begin with the clip: {early} of 40");
+    assert!(starts.iter().any(|share| *share > 0.7), "others start anywhere in it: {starts:?}");
+}

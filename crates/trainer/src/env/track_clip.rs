@@ -2,7 +2,7 @@
 //! together, the clips of whatever node the character rests at.
 
 use policy_core::NodeId;
-use policy_core::training::ActionScaling;
+use policy_core::training::{ActionScaling, clock_input};
 
 use super::demonstrations::{ClipPhase, Demonstrations};
 use super::env::{Env, EnvContext};
@@ -103,6 +103,14 @@ impl Env {
             }
             None => out.fill(f32::NAN),
         }
+    }
+
+    /// What a timed skill sees in place of the target: the second of the clip that it tracks.
+    pub(super) fn clock(&self, context: &EnvContext<'_>) -> Option<[f32; 2]> {
+        let clock_seconds = context.config.command.clock_seconds;
+        let tracking = self.tracking.filter(|_| clock_seconds > 0.0)?;
+        let seconds = context.demonstrations[tracking.node].seconds_at(tracking.phase);
+        Some(clock_input(seconds, clock_seconds))
     }
 
     /// True while it tracks a clip.

@@ -132,6 +132,10 @@ pub struct PolicyFile {
     /// True when it faces one way and moves another: the root's x axis in its observation lies in the frame of the way to face.
     #[serde(default)]
     pub strafes: bool,
+    /// Of a timed skill: in place of the target its policy sees `2.5 [cos a, sin a]`, where the angle `a` goes from 0 to pi in so many
+    /// seconds and stays there.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub clock_seconds: Option<f32>,
 }
 
 /// The model of a path.
@@ -151,6 +155,11 @@ pub struct PathFile {
     pub seconds: Vec<[f32; 2]>,
 }
 
+/// Seconds of the clock that a policy sees as that of a timed skill.
+fn clock_seconds(pack: &CharacterPack, policy: usize) -> Option<f32> {
+    pack.skills().iter().find(|skill| skill.policy.index() == policy)?.clock_seconds
+}
+
 impl Deployment {
     /// The deployment file of a pack.
     #[must_use]
@@ -163,6 +172,7 @@ impl Deployment {
             fall_height: node.fall_height,
             speed_mps: node.speed_mps,
             strafes: node.strafes,
+            clock_seconds: clock_seconds(pack, index),
         });
         let paths = graph.paths().iter().enumerate().map(|(index, path)| PathFile {
             name: path.name().to_owned(),

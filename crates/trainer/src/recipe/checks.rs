@@ -148,7 +148,7 @@ impl Recipe {
     /// What goes with skills alone, and what with skills that are trained together.
     fn reward_checks(&self, phase: &Phase) -> Vec<Check> {
         let Phase { environment, ppo, .. } = phase;
-        let (reward, reset) = (&environment.reward, &environment.reset);
+        let (reward, reset, command) = (&environment.reward, &environment.reset, &environment.command);
         let together = !self.paths.is_empty();
         vec![
             (
@@ -162,6 +162,18 @@ impl Recipe {
                 "ppo.behaviour_cloning",
                 "none beside paths",
                 ppo.behaviour_cloning.to_string(),
+            ),
+            (
+                command.clock_seconds == 0.0 || (!together && reward.tracking_weight > 0.0),
+                "environment.command.clock_seconds",
+                "0 beside paths and without a tracking_weight: the clock is that of the clip that is tracked",
+                command.clock_seconds.to_string(),
+            ),
+            (
+                command.clock_seconds == 0.0 || reset.limp_share == 0.0,
+                "environment.reset.limp_share",
+                "0 beside a clock",
+                reset.limp_share.to_string(),
             ),
             (
                 !together || reward.tracking_share > 0.0 || reward.tracking_weight == 0.0,

@@ -32,6 +32,9 @@ pub struct ClipShare {
     /// First and last second of the clip that count; the whole clip when there are none.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub seconds: Option<[f32; 2]>,
+    /// Seconds for which its last pose is held at its end. Then it no longer begins anew.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub hold_seconds: Option<f32>,
     /// True to play it backwards: walking ahead becomes walking back.
     #[serde(default, skip_serializing_if = "is_false")]
     pub reversed: bool,
@@ -53,6 +56,7 @@ impl ClipShare {
             share: 1.0,
             mirror: true,
             seconds: None,
+            hold_seconds: None,
             reversed: false,
             pace: 1.0,
             side_steps_mps: None,
@@ -81,7 +85,13 @@ impl ClipShare {
         if self.reversed {
             clip = clip.reversed();
         }
-        if self.pace == 1.0 { Ok(clip) } else { clip.at_pace(self.pace) }
+        if self.pace != 1.0 {
+            clip = clip.at_pace(self.pace)?;
+        }
+        match self.hold_seconds {
+            Some(seconds) => clip.held(seconds),
+            None => Ok(clip),
+        }
     }
 }
 

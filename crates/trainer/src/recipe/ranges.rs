@@ -11,6 +11,7 @@ use super::{Recipe, RecipeError};
 const RANGES: &[(&str, f64, f64)] = &[
     ("clips.share", 1e-6, 1e6),
     ("clips.seconds", 0.0, 600.0),
+    ("clips.hold_seconds", 0.0, 60.0),
     ("clips.pace", 0.1, 10.0),
     ("clips.side_steps_mps", 0.1, 1.5),
     ("phases.samples", 1.0, 1e12),
@@ -34,6 +35,7 @@ const RANGES: &[(&str, f64, f64)] = &[
     ("environment.command.jump_share", 0.0, 1.0),
     ("environment.command.edge_secs", 0.0, 60.0),
     ("environment.command.edge_secs_factors", 0.1, 10.0),
+    ("environment.command.clock_seconds", 0.0, 600.0),
     ("environment.command.strafe.facing_secs", 0.0, 3600.0),
     ("environment.command.strafe.jump_share", 0.0, 1.0),
     ("environment.command.strafe.aside", 0.05, 2.0),

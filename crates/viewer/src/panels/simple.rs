@@ -140,6 +140,14 @@ fn caps(app: &App) -> Vec<Cap> {
         let told = "Rolls forward, from a walk.";
         caps.push(cap(named("B", key(KeyAction::Roll)), "roll", told, pressed(Button::East)));
     }
+    if pack.skill_named("jump").is_some() {
+        let told = "Jumps. A character that runs slows down first.";
+        caps.push(cap(named("Y", key(KeyAction::Jump)), "jump", told, pressed(Button::North)));
+    }
+    if pack.skill_named("kick").is_some() {
+        let told = "Kicks. A character that runs slows down first.";
+        caps.push(cap(named("X", key(KeyAction::Kick)), "kick", told, pressed(Button::West)));
+    }
     if pack.recovery().is_some() {
         let told = "Gets up. After a fall that comes by itself.";
         caps.push(cap(named("A", key(KeyAction::GetUp)), "get up", told, pressed(Button::South)));

@@ -42,6 +42,9 @@ pub struct CommandConfig {
     pub edge_secs_factors: [f32; 2],
     /// True to stay at the end of the path: on an edge, at the skill itself.
     pub stay_at_end: bool,
+    /// Seconds of the clock that a timed skill sees in place of the target, as in a pack; 0 for a skill that sees the target. The
+    /// clock shows the second of the clip that is tracked.
+    pub clock_seconds: f32,
     /// A skill that faces one way and moves another; none for one that faces its target.
     pub strafe: Option<StrafeConfig>,
 }
@@ -111,6 +114,7 @@ impl Default for CommandConfig {
             edge_secs: 0.0,
             edge_secs_factors: [1.0, 1.0],
             stay_at_end: false,
+            clock_seconds: 0.0,
             strafe: None,
         }
     }
