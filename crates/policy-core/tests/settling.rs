@@ -6,7 +6,7 @@ use std::sync::Arc;
 
 use common::{hand_over, standing};
 use policy_core::glam::Vec2;
-use policy_core::{Command, Controller, ControllerConfig, Goal, GraphPosition};
+use policy_core::{CharacterPack, Command, Controller, ControllerConfig, Goal, GraphPosition};
 
 const DT: f32 = 1.0 / 30.0;
 
@@ -48,4 +48,49 @@ fn after_a_skill_the_character_settles_before_it_goes_on() {
     );
     assert_eq!(settled(0.5, true), settled(0.5, false), "it is part of the state");
     assert!(settled(0.0, false).0 <= 1);
+}
+
+/// A gait that stands brakes by its agile variant without a target alone.
+#[test]
+fn a_character_that_is_to_stand_for_a_skill_or_after_one_has_no_target() {
+    let mut manifest = common::manifest();
+    manifest.policies[0].speed_mps = Some(0.0);
+    let jump = &mut manifest.skills[0];
+    (jump.entry, jump.returns_to, jump.discriminator) = (vec!["idle".into()], "idle".into(), None);
+    (jump.maximum_speed_mps, jump.end.limit_seconds) = (Some(0.5), 0.5);
+    let pack = Arc::new(CharacterPack::from_parts(manifest, common::tensors(-4.0)).unwrap());
+    let (walk, jump) = (pack.graph().node_named("walk").unwrap(), pack.skill_named("roll"));
+    let config = ControllerConfig { start: walk, steering: None, ..ControllerConfig::default() };
+    let mut controller = Controller::with_config(pack, config);
+    let ahead = Command { target: Some(Vec2::new(4.0, 0.0)), goal: Goal::Node(walk), ..Command::default() };
+    let mut moving = standing();
+    moving.bodies[0].linear_velocity.x = 1.0;
+    controller.tick(&moving, &ahead, DT);
+    assert_ne!(controller.report().target, [0.0; 2], "a walk goes to its target");
+    controller.tick(&moving, &Command { skill: jump, ..ahead }, DT);
+    for _ in 0..20 {
+        assert_eq!((controller.report().skill, controller.report().target), (None, [0.0; 2]), "it brakes");
+        controller.tick(&moving, &ahead, DT);
+    }
+    // It stands, jumps, and is asked for another jump meanwhile.
+    controller.tick(&standing(), &Command { skill: jump, ..ahead }, DT);
+    assert_eq!(controller.report().skill_started, jump);
+    controller.tick(&standing(), &Command { skill: jump, ..ahead }, DT);
+    while controller.report().skill_ended.is_none() {
+        controller.tick(&standing(), &ahead, DT);
+    }
+    let mut settled = 0;
+    while controller.report().skill_started.is_none() {
+        assert_eq!(controller.report().target, [0.0; 2], "it settles");
+        controller.tick(&standing(), &ahead, DT);
+        settled += 1;
+    }
+    assert!((14..=16).contains(&settled), "the second jump waits until it has settled: {settled} ticks");
+    while controller.report().skill_ended.is_none() {
+        controller.tick(&standing(), &ahead, DT);
+    }
+    for _ in 0..17 {
+        controller.tick(&standing(), &ahead, DT);
+    }
+    assert_ne!(controller.report().target, [0.0; 2], "then it goes on");
 }

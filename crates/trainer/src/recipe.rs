@@ -177,6 +177,12 @@ impl Recipe {
     pub fn meets_others(&self) -> bool {
         self.phases.iter().any(|phase| phase.environment.meetings.share > 0.0)
     }
+
+    /// True when episodes of a phase start in play.
+    #[must_use]
+    pub fn starts_in_play(&self) -> bool {
+        self.phases.iter().any(|phase| phase.environment.reset.in_play.is_some())
+    }
 }
 
 #[cfg(test)]

@@ -110,6 +110,30 @@ fn every_recipe_runs_and_binds_into_a_pack() {
     bind(&partial, &skills, &normalisers, &model, None).unwrap();
 }
 
+/// A policy that learned with one clock and is shown another one would do its skill too fast or too slowly.
+#[test]
+fn a_timed_skill_has_the_clock_of_its_recipe() {
+    let recipes = project().join("assets/recipes");
+    let plan = PackPlan::load(&recipes.join("pack/humanoid.toml")).unwrap();
+    let mut timed = 0;
+    for skill in &plan.skills {
+        let recipe = Recipe::load(&recipes.join(format!("{}.toml", skill.policy))).unwrap();
+        for phase in &recipe.phases {
+            let learned = phase.environment.command.clock_seconds;
+            assert_eq!(learned, skill.clock_seconds.unwrap_or(0.0), "{}", skill.name);
+            let starts = phase.environment.reset.in_play.map(|start| start.maximum_speed_mps);
+            let most = skill.maximum_speed_mps.unwrap_or(f32::INFINITY);
+            assert!(
+                starts.is_none_or(|learned| most <= learned),
+                "{} starts faster than it learned",
+                skill.name
+            );
+        }
+        timed += usize::from(skill.clock_seconds.is_some());
+    }
+    assert!(timed >= 1, "a jump");
+}
+
 /// The slim checkpoints of the joint run and of the skill that hands over are enough to continue both, and to train a child.
 fn slim_checkpoints_are_enough_to_continue(workspace: &Workspace, folder: &Path) {
     let kept = folder.join("kept_alone");

@@ -126,8 +126,8 @@ impl Controller {
         let squared = state.root().linear_velocity.truncate().length_squared();
         let [least, most] = [skill.minimum_speed_mps, skill.maximum_speed_mps];
         // One without conditions starts in any state.
-        let in_range =
-            (least == 0.0 || squared >= least * least) && (most.is_infinite() || squared <= most * most);
+        let calm = most.is_infinite() || (squared <= most * most && self.state.settle_secs == 0.0);
+        let in_range = (least == 0.0 || squared >= least * least) && calm;
         if in_range && skill.starts_from(self.state.report.position.nearest_node()) {
             return self.start_skill(pending);
         }

@@ -32,8 +32,14 @@ impl Controller {
     }
 
     /// Where on the graph to go, and the command; a character that is to leave a policy that strafes stays, and turns to its target first.
+    /// One that comes to a stand for a skill, or stands after one, has no target: a gait that stands brakes only without.
     pub(super) fn bound_for(&self, state: &CharacterState, command: &Command) -> (Command, GraphPosition) {
         let (position, goal) = (self.state.report.position, self.goal(command));
+        let held = self.state.report.pending_skill.is_some() || self.state.settle_secs > 0.0;
+        let is_to_stand = goal.as_node().is_some_and(|node| self.pack.graph().node(node).stands());
+        if held && is_to_stand && self.state.report.skill.is_none() {
+            return (Command { target: None, ..*command }, goal);
+        }
         match waits_before_leaving(self.pack.graph(), [position, goal], state, command.target) {
             Some(way) => (Command { facing: Some(way), ..*command }, position),
             None => (*command, goal),

@@ -14,9 +14,12 @@ use super::exploration::Exploration;
 use super::track_clip::{Tracking, own_clips};
 
 mod hand_over;
+mod in_play;
 mod pre_failure;
 
 pub use self::hand_over::HandOver;
+pub(crate) use self::in_play::GAITS;
+pub use self::in_play::InPlayConfig;
 pub(super) use self::pre_failure::PreFailureStates;
 
 /// Where episodes start.
@@ -38,6 +41,8 @@ pub struct ResetConfig {
     /// Share of episodes that start a second or two before an earlier failure of the same character, with the command it had
     /// then: rare failures are met often.
     pub pre_failure_share: f32,
+    /// Episodes of an episodic skill that start where a game starts it; none without.
+    pub in_play: Option<InPlayConfig>,
     /// Joint training only: episodes that start where episodic skills hand over to a node.
     pub hand_over: Vec<HandOverConfig>,
 }
@@ -98,6 +103,9 @@ impl Env {
                 self.tracker = false;
                 return;
             }
+        }
+        if self.start_in_play(context) {
+            return;
         }
         self.tracker = self.rng.chance(config.reward.tracking_share);
         self.command = Command::start(&config.command, context.graph, self.tracker, &mut self.rng);

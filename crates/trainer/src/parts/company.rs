@@ -5,7 +5,7 @@ use std::sync::Arc;
 use anyhow::{Context, Result, ensure};
 use policy_core::{CharacterPack, Controller, ControllerConfig};
 
-use crate::env::{MET, WALK};
+use crate::env::{GAITS, MET, WALK};
 use crate::pack::{PackPlan, TrainedSkill, bind};
 use crate::recipe::Recipe;
 use crate::workspace::Workspace;
@@ -14,13 +14,16 @@ use crate::workspace::Workspace;
 pub(super) const PLAN: &str = "pack/humanoid.toml";
 
 impl Workspace {
-    /// What drives the characters that are met in a recipe's phases; `None` where nothing is met.
+    /// What drives the characters that are met in a recipe's phases, and a character until a skill starts in play; `None` where
+    /// there is neither.
     pub(super) fn company(&self, recipe: &Recipe) -> Result<Option<Controller>> {
-        if !recipe.meets_others() {
-            return Ok(None);
-        }
-        let plan = PackPlan::load(&self.recipes.join(PLAN))?.only(|name| MET.contains(&name));
-        let pack = self.pack_of(&plan, "environment.meetings")?;
+        let (needed_by, names) = match (recipe.starts_in_play(), recipe.meets_others()) {
+            (true, _) => ("environment.reset.in_play", GAITS),
+            (false, true) => ("environment.meetings", MET.as_slice()),
+            (false, false) => return Ok(None),
+        };
+        let plan = PackPlan::load(&self.recipes.join(PLAN))?.only(|name| names.contains(&name));
+        let pack = self.pack_of(&plan, needed_by)?;
         let start = pack.graph().node_named(WALK);
         let start = start.with_context(|| format!("expected a node {WALK} in {PLAN}, found none"))?;
         let config = ControllerConfig { start, auto_recover: false, ..ControllerConfig::default() };

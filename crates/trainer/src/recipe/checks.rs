@@ -170,6 +170,12 @@ impl Recipe {
                 command.clock_seconds.to_string(),
             ),
             (
+                reset.in_play.is_none() || (!together && reward.tracking_weight > 0.0),
+                "environment.reset.in_play",
+                "none beside paths and without a tracking_weight: it starts the clip that is tracked",
+                format!("{:?}", reset.in_play),
+            ),
+            (
                 command.clock_seconds == 0.0 || reset.limp_share == 0.0,
                 "environment.reset.limp_share",
                 "0 beside a clock",
