@@ -166,10 +166,12 @@ fn the_scripts_of_the_assets_are_sound() {
 #[test]
 fn the_tour_shows_every_skill() {
     let tour = Script::load(&scripts_folder().join("tour.ron")).unwrap();
-    let states: Vec<_> = (0..2520).map(|tick| tour.state_at(f64::from(tick) / 30.0)).collect();
-    assert_eq!(tour.duration(), 84.0);
+    let states: Vec<_> = (0..2730).map(|tick| tour.state_at(f64::from(tick) / 30.0)).collect();
+    assert_eq!(tour.duration(), 91.0);
     assert!(states.iter().any(|s| s.right_trigger == 1.0) && states.iter().any(|s| s.left_trigger == 1.0));
-    for button in [Button::East, Button::LeftShoulder, Button::RightShoulder, Button::RightStick] {
+    for button in
+        [Button::East, Button::North, Button::LeftShoulder, Button::RightShoulder, Button::RightStick]
+    {
         assert!(states.iter().any(|s| s.buttons.contains(button)), "{button:?}");
     }
     assert!(states.last().is_some_and(|s| s.left_stick[1] > 0.5), "walks off at the end");
