@@ -1,6 +1,9 @@
 //! The simple layout: how fast the character is, what is blended, and which keys do what.
 
-use egui::{Align2, Color32, CornerRadius, FontId, Frame, Margin, Rect, RichText, Sense, Stroke, Ui, vec2};
+use egui::{
+    Align2, Color32, CornerRadius, FontId, Frame, Margin, Rect, RichText, Sense, Stroke, TextStyle,
+    TextWrapMode, Ui, WidgetText, vec2,
+};
 use policy_core::{Button, GamepadState, PolicyId};
 
 use super::{PRESENT, frame, policy_colour};
@@ -163,7 +166,19 @@ fn stick(input: &GamepadState) -> f32 {
     input.left_stick[0].hypot(input.left_stick[1])
 }
 
+/// Margin of a cap beside its text, points.
+const CAP_MARGIN: i8 = 6;
+
+/// A cap and what it does, on one row: where the rest of the row is too short for both, on the next one.
 fn draw_cap(ui: &mut Ui, cap: &Cap, gap: f32) {
+    let width = |ui: &Ui, text: &str| {
+        let text = WidgetText::from(text);
+        text.into_galley(ui, Some(TextWrapMode::Extend), f32::INFINITY, TextStyle::Body).size().x
+    };
+    let needed = width(ui, &cap.key) + width(ui, cap.action) + 2.0 * f32::from(CAP_MARGIN) + 2.0;
+    if ui.available_size_before_wrap().x < needed + ui.spacing().item_spacing.x {
+        ui.end_row();
+    }
     let (fill, text) = match cap.pressed {
         true => (PRESENT, Color32::BLACK),
         false => (Color32::from_gray(52), Color32::WHITE),
@@ -172,7 +187,7 @@ fn draw_cap(ui: &mut Ui, cap: &Cap, gap: f32) {
         .fill(fill)
         .stroke(Stroke::new(1.0, Color32::from_gray(110)))
         .corner_radius(CornerRadius::same(4))
-        .inner_margin(Margin::symmetric(6, 2));
+        .inner_margin(Margin::symmetric(CAP_MARGIN, 2));
     let key = shape.show(ui, |ui| ui.label(RichText::new(&cap.key).color(text))).response;
     key.on_hover_text(cap.told);
     ui.label(cap.action).on_hover_text(cap.told);
