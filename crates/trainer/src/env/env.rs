@@ -41,7 +41,7 @@ pub struct EnvContext<'a> {
     pub heights: &'a TerminationHeights,
     /// Bodies that are pushed.
     pub pushed: &'a [BodyId],
-    /// The controller of the characters that are met; `None` where nothing is met.
+    /// What drives the characters that are met, and a character until a skill starts in play; `None` where there is neither.
     pub company: Option<&'a Controller>,
 }
 
