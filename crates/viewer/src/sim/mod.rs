@@ -81,7 +81,7 @@ pub struct Divergence {
 pub const SHOVE_BUTTON: Button = Button::LeftShoulder;
 
 /// Force of a shove on the torso, newton: more than any gait survives.
-const SHOVE_NEWTON: f32 = 1600.0;
+const SHOVE_NEWTON: f32 = 1200.0;
 
 /// Length of a shove, seconds.
 const SHOVE_SECS: f32 = 0.2;
