@@ -11,7 +11,7 @@ use rayon::prelude::*;
 use serde::Serialize;
 
 use super::eval_character::{EvalCharacter, SETTLE_SECS};
-use crate::trial::{TICK_SECS, median};
+use crate::trial::{OFF_GROUND_METRES, TICK_SECS, median};
 
 /// Seconds within which a dropped character must stand.
 const GET_UP_SECS: f32 = 5.0;
@@ -62,9 +62,6 @@ pub struct SkillReport {
     /// Seconds in which both feet are off the ground.
     pub air_s: Option<f32>,
 }
-
-/// A foot whose lowest point is higher is off the ground, metres.
-const OFF_GROUND_METRES: f32 = 0.01;
 
 /// What the feet do while a skill runs.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -156,8 +153,10 @@ pub fn watch_skill(
     let mut states = vec![eval.state.clone()];
     let mut after = 0.0;
     while after < 0.5 && states.len() < 300 {
-        let ahead = eval.ahead(back).target.filter(|_| pack.recovery() != Some(skill));
-        let command = Command { target: ahead, skill: request.take(), ..eval.ahead(back) };
+        let mut command = Command { skill: request.take(), ..eval.ahead(back) };
+        if pack.recovery() == Some(skill) {
+            command.target = None;
+        }
         if !eval.tick(&command) {
             break;
         }

@@ -9,7 +9,7 @@ use files::quoted;
 use serde::Serialize;
 
 use crate::amp::DiscriminatorConfig;
-use crate::env::EnvironmentConfig;
+use crate::env::{EnvironmentConfig, GAITS, MET};
 use crate::ppo::PpoConfig;
 
 mod checks;
@@ -172,16 +172,18 @@ impl Recipe {
         &self.phases[self.phases.len() - 1]
     }
 
-    /// True when characters meet others in one of its phases.
-    #[must_use]
-    pub fn meets_others(&self) -> bool {
-        self.phases.iter().any(|phase| phase.environment.meetings.share > 0.0)
-    }
-
-    /// True when episodes of a phase start in play.
-    #[must_use]
-    pub fn starts_in_play(&self) -> bool {
-        self.phases.iter().any(|phase| phase.environment.reset.in_play.is_some())
+    /// Trained gaits that drive a character in one of its phases, one that is met or one until a skill starts in play, and the field
+    /// that needs them; `None` where there is neither.
+    pub(crate) fn driven_by(&self) -> Option<(&'static str, &'static [&'static str])> {
+        let any =
+            |needs: fn(&EnvironmentConfig) -> bool| self.phases.iter().any(|phase| needs(&phase.environment));
+        if any(|environment| environment.reset.in_play.is_some()) {
+            Some(("environment.reset.in_play", GAITS))
+        } else if any(|environment| environment.meetings.share > 0.0) {
+            Some(("environment.meetings", &MET))
+        } else {
+            None
+        }
     }
 }
 

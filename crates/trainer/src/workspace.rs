@@ -8,7 +8,7 @@ use clips::{ClipError, ClipFolder};
 use physics_bridge::Model;
 
 use crate::checkpoint::{Checkpoint, CheckpointError};
-use crate::env::{Demonstrations, GAITS, MET, Normalisers};
+use crate::env::{Demonstrations, Normalisers};
 use crate::recipe::{ClipShare, Recipe};
 use crate::run::{CHECKPOINT, Existing, Loaded, METRICS, METRICS_FILE, Run, RunFolder, newest_checkpoint};
 use crate::training::Training;
@@ -88,9 +88,8 @@ impl Workspace {
                 let hand_over =
                     r.first().environment.reset.hand_over.iter().map(|hand_over| &hand_over.skill);
                 let skills = r.parent.iter().chain(&r.variant_of).chain(r.paths.iter().flatten());
-                let met = MET.iter().copied().filter(|_| r.meets_others());
-                let met = met.chain(GAITS.iter().copied().filter(|_| r.starts_in_play()));
-                let mut needed = skills.chain(hand_over).map(String::as_str).chain(met);
+                let driven_by = r.driven_by().into_iter().flat_map(|(_, gaits)| gaits.iter().copied());
+                let mut needed = skills.chain(hand_over).map(String::as_str).chain(driven_by);
                 needed.all(|p| ordered.iter().any(|o| o.skill == p))
             };
             let Some(skill) = left.values().find(|r| ready(r)).map(|r| r.skill.clone()) else {

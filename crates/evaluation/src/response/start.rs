@@ -3,16 +3,13 @@
 use serde::{Deserialize, Serialize};
 
 use crate::Rig;
-use crate::trial::{Settled, TICK_SECS, median, ticks};
+use crate::trial::{OFF_GROUND_METRES, Settled, TICK_SECS, median, ticks};
 
 /// Speed of a walk that has started, metres per second.
 const WALK_MPS: f32 = 0.9;
 
 /// Speed of a run that has started, metres per second.
 const RUN_MPS: f32 = 2.0;
-
-/// A foot whose lowest point is higher is off the ground, metres.
-const OFF_GROUND_METRES: f32 = 0.01;
 
 /// A start that takes longer never comes, seconds.
 const LIMIT_SECS: f32 = 12.0;

@@ -29,6 +29,9 @@ pub use statistics::{mean, median, quantile};
 /// Seconds of a control tick.
 pub const TICK_SECS: f32 = 1.0 / CONTROL_HZ as f32;
 
+/// A foot whose lowest point is higher is off the ground, metres.
+pub(crate) const OFF_GROUND_METRES: f32 = 0.01;
+
 /// Ticks in a time, rounded.
 #[must_use]
 pub fn ticks(secs: f32) -> u32 {

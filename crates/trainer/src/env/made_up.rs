@@ -1,8 +1,27 @@
-//! Clips that the tests of this folder make up.
+//! What the tests of this folder make up, and the pack that they share.
+
+use std::path::Path;
+use std::sync::Arc;
 
 use clips::Clip;
 use glam::{Quat, Vec3};
-use policy_core::Skeleton;
+use physics_bridge::Model;
+use policy_core::{CharacterPack, Skeleton};
+
+use super::normalisers::Normalisers;
+
+/// The shipped body and pack, and the pack's normalisers.
+pub(super) fn shipped() -> (Model, Arc<CharacterPack>, Normalisers) {
+    let assets = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../assets");
+    let model = Model::load(assets.join("humanoid.xml")).unwrap();
+    let pack = std::fs::read(assets.join("humanoid.pack.safetensors")).unwrap();
+    let pack = Arc::new(CharacterPack::from_bytes(&pack).unwrap());
+    let normalisers = Normalisers {
+        observation: pack.tensors().observation_normaliser.clone(),
+        frame: pack.tensors().discriminator_normaliser.clone(),
+    };
+    (model, pack, normalisers)
+}
 
 /// Index of a body of the humanoid.
 pub(super) fn body(name: &str) -> usize {

@@ -3,7 +3,7 @@
 
 use clips::placed;
 use physics_bridge::{Pose, Terrain, WALKING_START_MPS};
-use policy_core::Heading;
+use policy_core::{Heading, JointTargets};
 use random::limp::{go_limp, random_attitude};
 use serde::{Deserialize, Serialize};
 
@@ -116,10 +116,9 @@ impl Env {
         } else {
             self.start_in_clips(context, limp);
         }
-        let at = (self.root_position(), self.heading().angle());
-        self.command.aim(&config.command, context.graph, at, &mut self.rng);
+        self.aim(context);
         let moves = self.state.root().linear_velocity.truncate();
-        self.command.go_on(context.graph, at.0, moves);
+        self.command.go_on(context.graph, self.root_position(), moves);
         // Of skills trained together only trackers track clips.
         let others = config.reward.tracking_share > 0.0 && !self.tracker;
         if standing && config.command.clock_seconds > 0.0 {
@@ -127,6 +126,23 @@ impl Env {
         } else if limp || standing || config.reward.tracking_weight == 0.0 || others {
             self.tracking = None;
         }
+    }
+
+    /// Gives the command its first target, from where the character is.
+    fn aim(&mut self, context: &EnvContext<'_>) {
+        let at = (self.root_position(), self.heading().angle());
+        self.command.aim(&context.config.command, context.graph, at, &mut self.rng);
+    }
+
+    /// A tick of the body before the episode begins; false when the physics diverged.
+    fn step_before(&mut self, context: &EnvContext<'_>, targets: &JointTargets) -> bool {
+        self.character.actuate(targets);
+        if self.character.step().is_err() {
+            return false;
+        }
+        self.character.sense_into(&mut self.state);
+        self.push_frame(context);
+        true
     }
 
     /// Chooses the horizontal position of the next start: the origin on flat ground, anywhere near the middle of a terrain.

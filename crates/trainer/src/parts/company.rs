@@ -5,7 +5,7 @@ use std::sync::Arc;
 use anyhow::{Context, Result, ensure};
 use policy_core::{CharacterPack, Controller, ControllerConfig};
 
-use crate::env::{GAITS, MET, WALK};
+use crate::env::WALK;
 use crate::pack::{PackPlan, TrainedSkill, bind};
 use crate::recipe::Recipe;
 use crate::workspace::Workspace;
@@ -17,11 +17,7 @@ impl Workspace {
     /// What drives the characters that are met in a recipe's phases, and a character until a skill starts in play; `None` where
     /// there is neither.
     pub(super) fn company(&self, recipe: &Recipe) -> Result<Option<Controller>> {
-        let (needed_by, names) = match (recipe.starts_in_play(), recipe.meets_others()) {
-            (true, _) => ("environment.reset.in_play", GAITS),
-            (false, true) => ("environment.meetings", MET.as_slice()),
-            (false, false) => return Ok(None),
-        };
+        let Some((needed_by, names)) = recipe.driven_by() else { return Ok(None) };
         let plan = PackPlan::load(&self.recipes.join(PLAN))?.only(|name| names.contains(&name));
         let pack = self.pack_of(&plan, needed_by)?;
         let start = pack.graph().node_named(WALK);

@@ -44,8 +44,7 @@ impl Env {
         let target = out_of.map(|_| self.root_position() + TARGET_RANGE_METRES * self.heading().direction());
         let mut asked = GameCommand { skill: Some(hand_over.skill), target, ..GameCommand::default() };
         for _ in 0..RISE_TICKS {
-            let targets = controller.tick(&self.state, &asked, DT_SECS);
-            self.character.actuate(targets);
+            controller.tick(&self.state, &asked, DT_SECS);
             asked.skill = None;
             match controller.report().skill_ended {
                 Some((_, SkillEnd::Recognised)) => {
@@ -56,18 +55,15 @@ impl Env {
                         hand_over.node,
                         &mut self.rng,
                     );
-                    let at = (self.root_position(), self.heading().angle());
-                    self.command.aim(&context.config.command, context.graph, at, &mut self.rng);
+                    self.aim(context);
                     return true;
                 }
                 Some(_) => return false,
                 None => {}
             }
-            if self.character.step().is_err() {
+            if !self.step_before(context, controller.joint_targets()) {
                 return false;
             }
-            self.character.sense_into(&mut self.state);
-            self.push_frame(context);
         }
         false
     }
@@ -75,31 +71,19 @@ impl Env {
 
 #[cfg(test)]
 mod tests {
-    use std::path::Path;
-    use std::sync::Arc;
-
-    use physics_bridge::Model;
-    use policy_core::{CharacterPack, ControllerConfig, NodeId};
+    use policy_core::{ControllerConfig, NodeId};
 
     use super::super::super::config::EnvironmentConfig;
     use super::super::super::demonstrations::Demonstrations;
     use super::super::super::graph::{GraphNode, TrainingGraph};
-    use super::super::super::made_up::still;
-    use super::super::super::normalisers::Normalisers;
+    use super::super::super::made_up::{shipped, still};
     use super::super::super::termination::TerminationHeights;
     use super::*;
     use random::Rng;
 
     #[test]
     fn the_shipped_skill_hands_over_a_character_that_stands() {
-        let assets = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../assets");
-        let model = Model::load(assets.join("humanoid.xml")).unwrap();
-        let pack = std::fs::read(assets.join("humanoid.pack.safetensors")).unwrap();
-        let pack = Arc::new(CharacterPack::from_bytes(&pack).unwrap());
-        let normalisers = Normalisers {
-            observation: pack.tensors().observation_normaliser.clone(),
-            frame: pack.tensors().discriminator_normaliser.clone(),
-        };
+        let (model, pack, normalisers) = shipped();
         let clips =
             Demonstrations::from_clips(&[(still(30), 1.0, false)], &model, &normalisers.frame).unwrap();
         let config = EnvironmentConfig::default();

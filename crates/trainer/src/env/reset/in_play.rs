@@ -81,12 +81,9 @@ impl Env {
                 ..GameCommand::default()
             };
             let targets = controller.tick(&self.state, &asked, DT_SECS);
-            self.character.actuate(targets);
-            if self.character.step().is_err() {
+            if !self.step_before(context, targets) {
                 return false;
             }
-            self.character.sense_into(&mut self.state);
-            self.push_frame(context);
         }
         false
     }
@@ -95,8 +92,7 @@ impl Env {
     fn begin_in_play(&mut self, context: &EnvContext<'_>) -> bool {
         self.tracker = false;
         self.command = Command::start(&context.config.command, context.graph, false, &mut self.rng);
-        let at = (self.root_position(), self.heading().angle());
-        self.command.aim(&context.config.command, context.graph, at, &mut self.rng);
+        self.aim(context);
         self.tracking = Some(self.track_from_the_beginning(context));
         !self.has_failed(context)
     }
@@ -104,31 +100,19 @@ impl Env {
 
 #[cfg(test)]
 mod tests {
-    use std::path::Path;
-    use std::sync::Arc;
-
-    use physics_bridge::Model;
-    use policy_core::{CharacterPack, Controller, ControllerConfig};
+    use policy_core::{Controller, ControllerConfig};
     use random::Rng;
 
     use super::super::super::config::EnvironmentConfig;
     use super::super::super::demonstrations::Demonstrations;
     use super::super::super::graph::{GraphNode, TrainingGraph};
-    use super::super::super::made_up::still;
-    use super::super::super::normalisers::Normalisers;
+    use super::super::super::made_up::{shipped, still};
     use super::super::super::termination::TerminationHeights;
     use super::*;
 
     #[test]
     fn a_skill_starts_where_a_character_is_slow_enough_and_tracks_its_clip_from_there() {
-        let assets = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../assets");
-        let model = Model::load(assets.join("humanoid.xml")).unwrap();
-        let pack = std::fs::read(assets.join("humanoid.pack.safetensors")).unwrap();
-        let pack = Arc::new(CharacterPack::from_bytes(&pack).unwrap());
-        let normalisers = Normalisers {
-            observation: pack.tensors().observation_normaliser.clone(),
-            frame: pack.tensors().discriminator_normaliser.clone(),
-        };
+        let (model, pack, normalisers) = shipped();
         let clips =
             Demonstrations::from_clips(&[(still(30), 1.0, false)], &model, &normalisers.frame).unwrap();
         let mut config = EnvironmentConfig::default();
