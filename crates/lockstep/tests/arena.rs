@@ -2,8 +2,8 @@
 #![allow(missing_docs, reason = "tests")]
 
 use lockstep::{
-    Arena, ArenaConfig, ArenaError, ArenaScene, LooseKind, PUT_BUTTON, Pad, SCRIPT_TICKS, SHOVE_BUTTON, Seen, THROW_BUTTON,
-    script_pad,
+    Arena, ArenaConfig, ArenaError, ArenaScene, LooseKind, PUT_BUTTON, Pad, SCRIPT_TICKS, SHOVE_BUTTON, Seen,
+    THROW_BUTTON, script_pad,
 };
 use replay::{Playback, Recorder, Replay};
 

@@ -247,6 +247,27 @@ fn the_recovery_skill_takes_over_when_standing_up_is_late() {
 }
 
 #[test]
+fn a_skill_that_is_asked_for_in_a_crawl_waits_until_the_character_has_risen() {
+    let mut low = standing();
+    low.bodies[0].position.z = 0.3;
+    let pack = common::pack(0.0);
+    let (start, recovery) = (pack.graph().node_named("crawl").unwrap(), pack.recovery());
+    let roll = pack.skill_named("roll");
+    let config = ControllerConfig { start, ..ControllerConfig::default() };
+    let mut controller = Controller::with_config(Arc::new(pack), config);
+    let mut asked = Command { skill: roll, ..Command::default() };
+    for _ in 0..90 {
+        controller.tick(&low, &asked, DT);
+        asked.skill = None;
+        if controller.report().skill.is_some() {
+            break;
+        }
+    }
+    assert_eq!(controller.report().skill_started, recovery);
+    assert_eq!(controller.report().pending_skill, roll, "it rises for the roll");
+}
+
+#[test]
 fn a_state_that_is_not_finite_gives_a_safe_action_and_a_flag() {
     let mut controller = controller(0.0, "walk");
     controller.tick(&standing(), &Command::default(), DT);

@@ -9,7 +9,7 @@ use files::quoted;
 use serde::Serialize;
 
 use crate::amp::DiscriminatorConfig;
-use crate::env::{EnvironmentConfig, GAITS, MET};
+use crate::env::{EnvironmentConfig, MET, PLAYED};
 use crate::ppo::PpoConfig;
 
 mod checks;
@@ -178,7 +178,7 @@ impl Recipe {
         let any =
             |needs: fn(&EnvironmentConfig) -> bool| self.phases.iter().any(|phase| needs(&phase.environment));
         if any(|environment| environment.reset.in_play.is_some()) {
-            Some(("environment.reset.in_play", GAITS))
+            Some(("environment.reset.in_play", PLAYED))
         } else if any(|environment| environment.meetings.share > 0.0) {
             Some(("environment.meetings", &MET))
         } else {

@@ -83,7 +83,7 @@ fn every_number_has_a_range() {
     let start =
         crate::env::HandOverConfig { skill: "get_up".into(), share: 0.5, out_of: vec!["walk".into()] };
     reset.hand_over = vec![start];
-    reset.in_play = Some(crate::env::InPlayConfig { share: 0.5, maximum_speed_mps: 0.7 });
+    reset.in_play = Some(crate::env::InPlayConfig { share: 0.5, maximum_speed_mps: Some(0.7) });
     recipe.phases[0].environment.termination.min_heights.insert("pelvis".into(), 0.5);
     recipe.check_ranges(Path::new("x.toml")).expect("a range for every field and defaults within them");
 }
@@ -151,6 +151,9 @@ fn fields_that_do_not_fit_together_are_named() {
     let in_play = "environment.reset.in_play = { share = 0.5, maximum_speed_mps = 0.7 }\n";
     assert!(error(in_play).contains("in_play") && error_together(in_play).contains("in_play"));
     assert!(parse(&format!("{GOOD}{tracking}{in_play}")).is_ok());
+    let let_go = "environment.reset.in_play = { share = 0.5 }\n";
+    assert!(parse(&format!("{GOOD}{let_go}")).is_ok());
+    assert!(error(&format!("{tracking}{let_go}")).contains("maximum_speed_mps"));
     assert!(error(&format!("{tracking}{clock}environment.reset.limp_share = 0.1")).contains("limp_share"));
     let hand_over = "environment.reset.hand_over = [{ skill = \"get_up\", share = 0.1 }]";
     assert!(parse(&format!("{}{hand_over}\n", together())).is_ok());

@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 
 use policy_core::training::fall_height;
-use policy_core::{CharacterPack, GraphPosition, SkillEnd};
+use policy_core::{CharacterPack, GraphPosition, SkillEnd, SkillId};
 use serde::{Deserialize, Serialize};
 
 use super::restless::Player;
@@ -61,23 +61,46 @@ impl PadKind {
 }
 
 /// Falls under a pad at random.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(default)]
 pub struct RandomPadReport {
     /// Falls per minute of one character. It gets up by itself.
     pub falls_per_minute: f32,
+    /// Those falls by the skill that had ended less than 3 s before, or that ran; `none` for all others.
+    pub falls_after: BTreeMap<String, u32>,
     /// Times per minute that Get-up raised a character out of a crawl that was late to rise.
     pub rises_by_skill_per_minute: f32,
     /// Share of the time in the skill that raises it, 0 to 1, without a press.
     pub down: f32,
 }
 
+/// A fall this much later than the end of a skill has nothing to do with it, seconds.
+const AFTER_SECS: f32 = 3.0;
+
 /// Counts of one character.
-#[derive(Clone, Copy, Debug, Default)]
+#[derive(Clone, Debug, Default)]
 struct Count {
-    falls: u32,
+    /// The skill before each fall.
+    falls: Vec<Option<SkillId>>,
     rises: u32,
     down_ticks: u32,
+}
+
+/// The skill that runs or ran last.
+#[derive(Clone, Copy, Debug, Default)]
+struct LastSkill(Option<(SkillId, u32)>);
+
+impl LastSkill {
+    /// The report before a fall is told apart from a skill that it starts: a start takes effect in the next tick.
+    fn look(&mut self, trial: &Trial) {
+        self.0 = self.0.map(|(skill, age)| (skill, age + 1)).filter(|(_, age)| *age < ticks(AFTER_SECS));
+        let report = trial.controller.report();
+        let ran = report.skill_ended.map(|(skill, _)| skill);
+        let runs = report.skill.filter(|progress| progress.seconds > 0.0).map(|progress| progress.skill);
+        if let Some(skill) = runs.or(ran) {
+            self.0 = Some((skill, 0));
+        }
+    }
 }
 
 /// Falls by kind.
@@ -90,8 +113,14 @@ pub fn measure_random_pad(rig: &Rig<'_>) -> BTreeMap<String, RandomPadReport> {
         let counts = rig.each(&seeds, secs, |seed| play(rig, &walk, kind, *seed));
         let minutes = (secs * counts.len() as f32 / 60.0).max(1e-6);
         let per_minute = |count: fn(&Count) -> u32| counts.iter().map(count).sum::<u32>() as f32 / minutes;
+        let mut falls_after = BTreeMap::new();
+        for skill in counts.iter().flat_map(|count| &count.falls) {
+            let name = skill.map_or("none", |skill| &rig.pack.skills()[skill.index()].name);
+            *falls_after.entry(name.into()).or_default() += 1;
+        }
         RandomPadReport {
-            falls_per_minute: per_minute(|count| count.falls),
+            falls_per_minute: per_minute(|count| count.falls.len() as u32),
+            falls_after,
             rises_by_skill_per_minute: per_minute(|count| count.rises),
             down: per_minute(|count| count.down_ticks) * TICK_SECS / 60.0,
         }
@@ -102,19 +131,24 @@ pub fn measure_random_pad(rig: &Rig<'_>) -> BTreeMap<String, RandomPadReport> {
 fn play(rig: &Rig<'_>, walk: &Gait, kind: PadKind, seed: u64) -> Count {
     let mut trial = Trial::new(rig.model, rig.pack, rig.config, walk);
     let mut player = Player::new(kind, rig.pack, seed);
-    let (mut count, mut raised) = (Count::default(), false);
+    let (mut count, mut raised, mut last) = (Count::default(), false, LastSkill::default());
     for _ in 0..ticks(rig.effort.pad_secs) {
         player.hold(&mut trial);
         let position = trial.controller.report().position;
         // A pack without a skill to get up leaves the character lying.
-        if !trial.tick() || trial.is_down() {
-            count.falls += 1;
+        let sound = trial.tick();
+        last.look(&trial);
+        let before = last.0.map(|(skill, _)| skill);
+        if !sound || trial.is_down() {
+            count.falls.push(before);
             trial.place(trial.position(), 0.0);
-            raised = false;
+            (raised, last) = (false, LastSkill::default());
             continue;
         }
         let start = Start::of(&trial, position);
-        count.falls += u32::from(start == Start::Fall && !raised);
+        if start == Start::Fall && !raised {
+            count.falls.push(before);
+        }
         count.rises += u32::from(start == Start::LateRise && !raised);
         raised = match start {
             Start::Fall | Start::LateRise => true,

@@ -24,7 +24,7 @@ const LIGHT_STICK: &str = "idle_light_stick";
 /// Name, node, and how far the stick is pushed while it settles and while it turns.
 type Entry = (&'static str, &'static str, f32, f32);
 
-const GAITS: [Entry; 9] = [
+const GAITS: [Entry; 10] = [
     ("idle", "idle", 0.0, 1.0),
     (LIGHT_STICK, "idle", 0.0, 0.3),
     ("half_stick", "walk", 0.5, 0.5),
@@ -34,6 +34,7 @@ const GAITS: [Entry; 9] = [
     ("crouch", "crouch", 1.0, 1.0),
     ("crawl", "crawl", 1.0, 1.0),
     ("zombie_walk", "zombie_walk", 1.0, 1.0),
+    ("strafe", "strafe", 1.0, 1.0),
 ];
 
 impl Gait {

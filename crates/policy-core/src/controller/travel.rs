@@ -62,9 +62,11 @@ impl Controller {
         } else if let (true, true, Some(recovery)) =
             (self.config.assist_rise, self.state.fall.rising_seconds() > ASSIST_SECONDS, self.pack.recovery())
         {
-            let rising = self.state.fall.rising_seconds;
+            let (rising, pending) = (self.state.fall.rising_seconds, self.state.report.pending_skill);
             self.start_skill(recovery);
             self.state.fall.rising_seconds = rising;
+            // The character rises for it.
+            self.state.report.pending_skill = pending;
         }
     }
 

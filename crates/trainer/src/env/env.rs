@@ -14,7 +14,7 @@ use super::exploration::Exploration;
 use super::graph::TrainingGraph;
 use super::meetings::Company;
 use super::normalisers::Normalisers;
-use super::reset::{HandOver, PreFailureStates};
+use super::reset::{HandOver, PlayedStarts, PreFailureStates};
 use super::reward::{Pace, RewardTerms, Task, foot_slip_mps, standing_reward, target_reward};
 use super::termination::TerminationHeights;
 use super::track_clip::Tracking;
@@ -78,6 +78,8 @@ pub struct Env {
     /// Ticks until it may track again.
     pub(super) lost_ticks: u32,
     pub(super) pre_failure: PreFailureStates,
+    /// Starts in play.
+    pub(super) played: PlayedStarts,
     pub(super) exploration: Exploration,
     /// Ticks of the episode in which it stood.
     pub(super) stood_ticks: u32,
@@ -120,6 +122,7 @@ impl Env {
             tracker: false,
             lost_ticks: 0,
             pre_failure: PreFailureStates::default(),
+            played: PlayedStarts::new(),
             exploration: Exploration::default(),
             stood_ticks: 0,
             delayed: false,

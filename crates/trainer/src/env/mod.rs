@@ -33,7 +33,7 @@ pub use meetings::MeetingsConfig;
 pub(crate) use meetings::{MET, WALK};
 pub use normalisers::Normalisers;
 pub use randomisation::RandomisationConfig;
-pub(crate) use reset::GAITS;
+pub(crate) use reset::PLAYED;
 pub use reset::{HandOver, HandOverConfig, InPlayConfig, ResetConfig};
 pub use reward::{Pace, RewardConfig, RewardTerms, Task, foot_slip_mps, standing_reward, target_reward};
 pub use termination::{Termination, TerminationConfig, TerminationHeights, TerminationRule};

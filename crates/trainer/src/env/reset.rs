@@ -18,8 +18,9 @@ mod in_play;
 mod pre_failure;
 
 pub use self::hand_over::HandOver;
-pub(crate) use self::in_play::GAITS;
 pub use self::in_play::InPlayConfig;
+pub(crate) use self::in_play::PLAYED;
+pub(super) use self::in_play::PlayedStarts;
 pub(super) use self::pre_failure::PreFailureStates;
 
 /// Where episodes start.

@@ -18,7 +18,8 @@ impl Workspace {
     /// there is neither.
     pub(super) fn company(&self, recipe: &Recipe) -> Result<Option<Controller>> {
         let Some((needed_by, names)) = recipe.driven_by() else { return Ok(None) };
-        let plan = PackPlan::load(&self.recipes.join(PLAN))?.only(|name| names.contains(&name));
+        let plan = PackPlan::load(&self.recipes.join(PLAN))?
+            .only(|name| names.contains(&name) && name != recipe.skill);
         let pack = self.pack_of(&plan, needed_by)?;
         let start = pack.graph().node_named(WALK);
         let start = start.with_context(|| format!("expected a node {WALK} in {PLAN}, found none"))?;

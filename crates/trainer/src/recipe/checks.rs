@@ -149,7 +149,7 @@ impl Recipe {
     fn reward_checks(&self, phase: &Phase) -> Vec<Check> {
         let Phase { environment, ppo, .. } = phase;
         let (reward, reset, command) = (&environment.reward, &environment.reset, &environment.command);
-        let together = !self.paths.is_empty();
+        let (together, tracks) = (!self.paths.is_empty(), reward.tracking_weight > 0.0);
         vec![
             (
                 together || reward.task_weight + reward.tracking_weight <= 1.0 + 1e-6,
@@ -170,9 +170,11 @@ impl Recipe {
                 command.clock_seconds.to_string(),
             ),
             (
-                reset.in_play.is_none() || (!together && reward.tracking_weight > 0.0),
+                reset
+                    .in_play
+                    .is_none_or(|in_play| !together && in_play.maximum_speed_mps.is_some() == tracks),
                 "environment.reset.in_play",
-                "none beside paths and without a tracking_weight: it starts the clip that is tracked",
+                "none beside paths; with a tracking_weight one with a maximum_speed_mps, and without a tracking_weight one without",
                 format!("{:?}", reset.in_play),
             ),
             (

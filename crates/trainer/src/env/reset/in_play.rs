@@ -1,106 +1,208 @@
-//! Starts of an episodic skill as a game has them: the character stands, or was on its way and came to a stand for the skill. The
-//! poses of clips are not those in which policies stand and brake.
+//! Starts as a game has them: the character is on its way, and comes to a stand for an episodic skill, or is told to go elsewhere.
+//! The poses of clips are not those in which policies stand, walk and brake.
 
-use policy_core::training::TARGET_RANGE_METRES;
-use policy_core::{Command as GameCommand, Goal, GraphPosition};
+use glam::Vec2;
+use physics_bridge::Snapshot;
+use policy_core::training::{FrameHistory, TARGET_RANGE_METRES};
+use policy_core::{Command as GameCommand, Controller, Goal, GraphPosition, SkillId};
 use serde::{Deserialize, Serialize};
 
 use super::super::command::{Command, DT_SECS};
 use super::super::env::{Env, EnvContext};
 
-/// The gaits that lead up to a start, and their variants.
-pub(crate) const GAITS: &[&str] = &[
+/// The gaits that lead up to a start, their variants, and a skill that may have ended just before it.
+pub(crate) const PLAYED: &[&str] = &[
     "idle",
     "walk",
     "jog",
     "run",
+    "crouch",
+    "zombie_walk",
+    "strafe",
     "idle_agile",
     "walk_agile",
     "jog_agile",
     "run_agile",
+    "crouch_agile",
     "idle_steady",
     "walk_steady",
     "jog_steady",
+    "roll",
 ];
 
 /// Of so many starts one each is out of these nodes.
-const OUT_OF: [&str; 8] = ["idle", "idle", "idle", "walk", "walk", "walk", "jog", "run"];
+const OUT_OF: [&str; 14] = [
+    "idle",
+    "idle",
+    "walk",
+    "walk",
+    "jog",
+    "run",
+    "crouch",
+    "crouch",
+    "zombie_walk",
+    "strafe",
+    "strafe",
+    "strafe",
+    "strafe",
+    "strafe",
+];
+
+/// The skill that may have ended just before a start.
+const ROLL: &str = "roll";
+
+/// Share of the starts out of a walk, a jog or a run that have a roll before them.
+const ROLL_SHARE: f32 = 0.25;
 
 /// Longest time on the way, seconds.
 const WAY_SECS: f32 = 3.0;
 
+/// Time between two directions on the way, seconds.
+const DIRECTION_SECS: [f32; 2] = [0.5, 2.0];
+
+/// Half of the characters that strafe turn on their way, at most so fast, radians a second.
+const FACING_RATE: f32 = 3.0;
+
 /// Longest rest after it, seconds. Half of the starts have none.
-const REST_SECS: f32 = 4.0;
+const REST_SECS: f32 = 3.0;
+
+/// Where the stick is let go, the policy that learns takes over within this time, for in a game it is blended in, seconds.
+const LET_GO_SECS: f32 = 0.3;
+
+/// Speed of a character that stands, metres per second.
+const STANDS_MPS: f32 = 0.3;
 
 /// A start that takes longer is given up, seconds.
-const LIMIT_SECS: f32 = 9.0;
+const LIMIT_SECS: f32 = 10.0;
 
-/// Starts where a game starts an episodic skill.
+/// Starts that a character keeps; each of them takes as long as several episodes.
+const KEPT: usize = 6;
+
+/// Share of the starts that are one of those, once there are so many.
+const KEPT_SHARE: f32 = 0.8;
+
+/// Starts where a game starts an episodic skill, or where a variant begins to act.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct InPlayConfig {
     /// Share of episodes.
     pub share: f32,
-    /// Speed below which the skill starts, as in the plan of the pack, metres per second.
-    pub maximum_speed_mps: f32,
+    /// Speed below which the skill starts, as in the plan of the pack, metres per second. None for a variant: one of a gait that stands
+    /// starts when the stick is let go, one of a gait that moves out of any other gait, half of the time out of a stand.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub maximum_speed_mps: Option<f32>,
 }
 
+/// Starts that were played, to return to.
+pub(in super::super) type PlayedStarts = Vec<(Snapshot, FrameHistory)>;
+
 impl Env {
-    /// Starts an episode in the tick in which a game would start the skill, for a share of the episodes; false for the others, and for a
-    /// character that fell on the way.
+    /// Starts an episode as a game would, for a share of the episodes; false for the others, and for a character that fell on the way.
     pub(super) fn start_in_play(&mut self, context: &EnvContext<'_>) -> bool {
-        let (Some(config), Some(gaits)) = (context.config.reset.in_play, context.company) else {
+        let (Some(config), Some(played)) = (context.config.reset.in_play, context.company) else {
             return false;
         };
         if !self.rng.chance(config.share) {
             return false;
         }
+        if self.played.len() == KEPT && self.rng.chance(KEPT_SHARE) {
+            let (snapshot, history) = &self.played[self.rng.index(KEPT)];
+            self.character.restore(snapshot).expect("a snapshot of the same character");
+            self.history.clone_from(history);
+            self.character.sense_into(&mut self.state);
+        } else if self.play_up_to_start(context, &config, played.clone()) {
+            let start = (self.character.save(), self.history.clone());
+            if self.played.len() < KEPT {
+                self.played.push(start);
+            } else {
+                let index = self.rng.index(KEPT);
+                self.played[index] = start;
+            }
+        } else {
+            return false;
+        }
+        self.begin_in_play(context)
+    }
+
+    /// Plays until a game would start the skill, or lets go of the stick; false when the character falls, or takes too long.
+    fn play_up_to_start(
+        &mut self,
+        context: &EnvContext<'_>,
+        config: &InPlayConfig,
+        mut controller: Controller,
+    ) -> bool {
         self.start_standing(context);
-        let mut controller = gaits.clone();
         controller.reset();
-        let graph = gaits.pack().graph();
+        let pack = controller.pack().clone();
+        let graph = pack.graph();
         let stand = graph.node_named(OUT_OF[0]).unwrap_or_default();
         controller.place_at(GraphPosition::node(stand));
         let out_of = graph.node_named(OUT_OF[self.rng.index(OUT_OF.len())]).unwrap_or(stand);
-        let moves = out_of != stand;
-        let way_secs = if moves { self.rng.range(0.3, WAY_SECS) } else { 0.0 };
-        let rest_secs = if moves && self.rng.chance(0.5) { 0.0 } else { self.rng.range(0.0, REST_SECS) };
-        let direction = self.heading().direction();
+        let way_secs = if out_of == stand { 0.0 } else { self.rng.range(0.3, WAY_SECS) };
+        let goes = way_secs > 0.0 && self.rng.chance(0.5);
+        // Once it is as slow as that, and on its way to a stand.
+        let (rest_secs, below_mps) = match config.maximum_speed_mps {
+            Some(most) if goes => (0.0, Some(most)),
+            Some(most) => (self.rng.range(0.0, REST_SECS), Some(most)),
+            None if context.config.command.speed_mps == 0.0 => (self.rng.range(0.0, LET_GO_SECS), None),
+            None if goes => (0.0, None),
+            None => (self.rng.range(0.5, REST_SECS), Some(STANDS_MPS)),
+        };
+        let rolls = |skill: &SkillId| pack.skills()[skill.index()].starts_from(out_of);
+        let mut roll = pack.skill_named(ROLL).filter(rolls).filter(|_| self.rng.chance(ROLL_SHARE));
+        let (mut settled_at, mut turns_at) = (0.0, 0.0);
+        let mut facing = self.heading().direction();
+        let mut direction = facing;
+        let looks_round = if self.rng.chance(0.5) { self.rng.range(-FACING_RATE, FACING_RATE) } else { 0.0 };
         for tick in 0..(LIMIT_SECS / DT_SECS) as u32 {
             let secs = tick as f32 * DT_SECS;
             let root = *self.state.root();
-            let slow = root.linear_velocity.truncate().length() < config.maximum_speed_mps;
-            let arrived = controller.report().position.nearest_node() == stand;
-            if secs >= way_secs + rest_secs && slow && arrived {
-                return self.begin_in_play(context);
+            let report = controller.report();
+            let rolling = report.skill.is_some() || report.pending_skill.is_some();
+            if rolling {
+                settled_at = secs + controller.config().settle_secs;
             }
+            let ready = below_mps.is_none_or(|most| {
+                report.position.nearest_node() == stand && root.linear_velocity.truncate().length() < most
+            });
+            if ready && secs >= settled_at.max(way_secs + rest_secs) {
+                return true;
+            }
+            if secs >= turns_at {
+                direction = facing.rotate(Vec2::from_angle(self.rng.angle()));
+                turns_at = secs + self.rng.range(DIRECTION_SECS[0], DIRECTION_SECS[1]);
+            }
+            facing = facing.rotate(Vec2::from_angle(looks_round * DT_SECS));
+            let ahead = root.position.truncate() + TARGET_RANGE_METRES * direction;
             let on_its_way = secs < way_secs;
             let asked = GameCommand {
-                target: on_its_way.then(|| root.position.truncate() + TARGET_RANGE_METRES * direction),
+                target: (on_its_way || rolling).then_some(ahead),
+                facing: graph.node(out_of).strafes.then_some(facing),
                 goal: Goal::Node(if on_its_way { out_of } else { stand }),
+                skill: if secs >= way_secs / 2.0 { roll.take() } else { None },
                 ..GameCommand::default()
             };
-            let targets = controller.tick(&self.state, &asked, DT_SECS);
-            if !self.step_before(context, targets) {
+            if !self.step_before(context, controller.tick(&self.state, &asked, DT_SECS)) {
                 return false;
             }
         }
         false
     }
 
-    /// Begins the clip where the character is; false where it has failed at once.
+    /// Begins the episode where the character is, and the clip of a skill that tracks one; false where it has failed at once.
     fn begin_in_play(&mut self, context: &EnvContext<'_>) -> bool {
         self.tracker = false;
         self.command = Command::start(&context.config.command, context.graph, false, &mut self.rng);
         self.aim(context);
-        self.tracking = Some(self.track_from_the_beginning(context));
+        let tracks = context.config.reward.tracking_weight > 0.0;
+        self.tracking = tracks.then(|| self.track_from_the_beginning(context));
         !self.has_failed(context)
     }
 }
 
 #[cfg(test)]
 mod tests {
-    use policy_core::{Controller, ControllerConfig};
+    use policy_core::ControllerConfig;
     use random::Rng;
 
     use super::super::super::config::EnvironmentConfig;
@@ -110,20 +212,20 @@ mod tests {
     use super::super::super::termination::TerminationHeights;
     use super::*;
 
-    #[test]
-    fn a_skill_starts_where_a_character_is_slow_enough_and_tracks_its_clip_from_there() {
+    /// Speeds at the starts of 16 tries of a skill, and how many of them track a clip.
+    fn starts(speed_mps: f32, maximum_speed_mps: Option<f32>, tracking_weight: f32) -> (Vec<f32>, usize) {
         let (model, pack, normalisers) = shipped();
         let clips =
             Demonstrations::from_clips(&[(still(30), 1.0, false)], &model, &normalisers.frame).unwrap();
         let mut config = EnvironmentConfig::default();
-        config.reward.tracking_weight = 0.9;
-        config.reset.in_play = Some(InPlayConfig { share: 1.0, maximum_speed_mps: 0.5 });
+        (config.reward.tracking_weight, config.command.speed_mps) = (tracking_weight, speed_mps);
+        config.reset.in_play = Some(InPlayConfig { share: 1.0, maximum_speed_mps });
         let gaits =
             Controller::with_config(pack, ControllerConfig { auto_recover: false, ..Default::default() });
         let context = EnvContext {
             config: &config,
             skeleton: model.skeleton(),
-            graph: &TrainingGraph::alone(vec![GraphNode::new("kick", &config, 1.0)], 0).unwrap(),
+            graph: &TrainingGraph::alone(vec![GraphNode::new("learns", &config, 1.0)], 0).unwrap(),
             demonstrations: &[&clips],
             start_demonstrations: None,
             hand_over: &[],
@@ -133,17 +235,32 @@ mod tests {
             company: Some(&gaits),
         };
         let mut env = Env::new(&model, &context, Rng::new(8, 0));
-        let (mut started, mut moving) = (0, 0);
-        for _ in 0..12 {
+        let (mut speeds, mut tracking) = (Vec::new(), 0);
+        for _ in 0..16 {
             if env.start_in_play(&context) {
-                let speed = env.state.root().linear_velocity.truncate().length();
-                assert!(speed < 0.5 && env.tracks(), "{speed}");
-                started += 1;
-                moving += u32::from(speed > 0.15);
+                speeds.push(env.state.root().linear_velocity.truncate().length());
+                tracking += usize::from(env.tracks());
             }
         }
-        assert!(started >= 9 && moving >= 1, "{started} started, {moving} of them while they braked");
+        assert!(env.played.len() == KEPT, "{} starts are kept", env.played.len());
         let without = EnvironmentConfig::default();
         assert!(!env.start_in_play(&EnvContext { config: &without, ..context }));
+        (speeds, tracking)
+    }
+
+    #[test]
+    fn a_skill_starts_where_a_character_is_slow_enough_and_tracks_its_clip_from_there() {
+        let (speeds, tracking) = starts(0.0, Some(0.5), 0.9);
+        assert!(speeds.len() >= 12 && tracking == speeds.len(), "{speeds:?}, {tracking}");
+        assert!(speeds.iter().all(|speed| *speed < 0.5) && speeds.iter().any(|speed| *speed > 0.1));
+    }
+
+    #[test]
+    fn a_variant_that_stands_starts_where_the_stick_is_let_go_and_one_that_moves_anywhere() {
+        for speed_mps in [0.0, 1.2] {
+            let (speeds, tracking) = starts(speed_mps, None, 0.0);
+            assert!(speeds.len() >= 12 && tracking == 0, "{speeds:?}, {tracking}");
+            assert!(speeds.iter().any(|speed| *speed > 0.5), "{speeds:?}");
+        }
     }
 }
