@@ -121,7 +121,7 @@ fn a_timed_skill_has_the_clock_of_its_recipe() {
         for phase in &recipe.phases {
             let learned = phase.environment.command.clock_seconds;
             assert_eq!(learned, skill.clock_seconds.unwrap_or(0.0), "{}", skill.name);
-            let starts = phase.environment.reset.in_play.map(|start| start.maximum_speed_mps);
+            let starts = phase.environment.reset.in_play.and_then(|start| start.maximum_speed_mps);
             let most = skill.maximum_speed_mps.unwrap_or(f32::INFINITY);
             assert!(
                 starts.is_none_or(|learned| most <= learned),
