@@ -6,7 +6,7 @@ use std::sync::Arc;
 
 use common::{hand_over, standing};
 use policy_core::glam::Vec2;
-use policy_core::{CharacterPack, Command, Controller, ControllerConfig, Goal, GraphPosition};
+use policy_core::{CharacterPack, Command, Controller, ControllerConfig, Goal, GraphPosition, Refusal};
 
 const DT: f32 = 1.0 / 30.0;
 
@@ -93,4 +93,24 @@ fn a_character_that_is_to_stand_for_a_skill_or_after_one_has_no_target() {
         controller.tick(&standing(), &ahead, DT);
     }
     assert_ne!(controller.report().target, [0.0; 2], "then it goes on");
+}
+
+#[test]
+fn getting_up_that_was_asked_for_in_a_roll_is_refused_once_the_roll_has_set_the_character_on_its_feet() {
+    let pack = Arc::new(common::pack(-4.0));
+    let [roll, get_up] = ["roll", "get_up"].map(|name| pack.skill_named(name).unwrap());
+    let start = pack.graph().node_named("walk").unwrap();
+    let config = ControllerConfig { start, ..ControllerConfig::default() };
+    let mut controller = Controller::with_config(pack, config);
+    controller.tick(&standing(), &Command { skill: Some(roll), ..Command::default() }, DT);
+    let mut low = standing();
+    low.bodies[0].position.z = 0.2;
+    controller.tick(&low, &Command { skill: Some(get_up), ..Command::default() }, DT);
+    assert_eq!(controller.report().pending_skill, Some(get_up));
+    while controller.report().skill.is_some() {
+        controller.tick(&standing(), &Command::default(), DT);
+    }
+    assert_eq!(controller.report().skill_ended.map(|(skill, _)| skill), Some(roll));
+    assert_eq!(controller.report().skill_refused, Some((get_up, Refusal::Upright)));
+    assert_eq!(controller.report().pending_skill, None);
 }

@@ -122,6 +122,12 @@ impl Controller {
         if self.state.report.skill.is_some() {
             return;
         }
+        // Asked for while the character lay in another skill, which has set it on its feet.
+        if let Some(why) = self.refusal(pending, heights) {
+            self.state.report.skill_refused = Some((pending, why));
+            self.state.report.pending_skill = None;
+            return;
+        }
         let skill = &self.pack.skills()[pending.index()];
         let squared = state.root().linear_velocity.truncate().length_squared();
         let [least, most] = [skill.minimum_speed_mps, skill.maximum_speed_mps];

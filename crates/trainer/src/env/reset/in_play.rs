@@ -60,6 +60,9 @@ const WAY_SECS: f32 = 3.0;
 /// Time between two directions on the way, seconds.
 const DIRECTION_SECS: [f32; 2] = [0.5, 2.0];
 
+/// Share of that time without a target: a strafing character that halts stands with its knees straight, and soon tips over.
+const HALT_SHARE: f32 = 0.3;
+
 /// Half of the characters that strafe turn on their way, at most so fast, radians a second.
 const FACING_RATE: f32 = 3.0;
 
@@ -152,7 +155,7 @@ impl Env {
         let mut roll = pack.skill_named(ROLL).filter(rolls).filter(|_| self.rng.chance(ROLL_SHARE));
         let (mut settled_at, mut turns_at) = (0.0, 0.0);
         let mut facing = self.heading().direction();
-        let mut direction = facing;
+        let (mut direction, mut halts) = (facing, false);
         let looks_round = if self.rng.chance(0.5) { self.rng.range(-FACING_RATE, FACING_RATE) } else { 0.0 };
         for tick in 0..(LIMIT_SECS / DT_SECS) as u32 {
             let secs = tick as f32 * DT_SECS;
@@ -170,13 +173,14 @@ impl Env {
             }
             if secs >= turns_at {
                 direction = facing.rotate(Vec2::from_angle(self.rng.angle()));
+                halts = self.rng.chance(HALT_SHARE);
                 turns_at = secs + self.rng.range(DIRECTION_SECS[0], DIRECTION_SECS[1]);
             }
             facing = facing.rotate(Vec2::from_angle(looks_round * DT_SECS));
             let ahead = root.position.truncate() + TARGET_RANGE_METRES * direction;
             let on_its_way = secs < way_secs;
             let asked = GameCommand {
-                target: (on_its_way || rolling).then_some(ahead),
+                target: ((on_its_way && !halts) || rolling).then_some(ahead),
                 facing: graph.node(out_of).strafes.then_some(facing),
                 goal: Goal::Node(if on_its_way { out_of } else { stand }),
                 skill: if secs >= way_secs / 2.0 { roll.take() } else { None },
