@@ -91,7 +91,26 @@ fn press(pad: &mut GamepadState, control: Control, way: f32, whole: f32) {
     match control {
         Control::LeftTrigger => pad.left_trigger = value,
         Control::RightTrigger => pad.right_trigger = value,
-        Control::Button(button) if value > 0.0 => pad.buttons = Buttons::NONE.with(button),
+        // A button leads to the end of its path.
+        Control::Button(button) if way >= whole => pad.buttons = Buttons::NONE.with(button),
         Control::Button(_) | Control::None => {}
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use policy_core::Button;
+
+    use super::*;
+
+    #[test]
+    fn the_pad_of_a_gait_holds_what_leads_to_its_node() {
+        let path = concat!(env!("CARGO_MANIFEST_DIR"), "/../../assets/humanoid.pack.safetensors");
+        let pack = CharacterPack::from_bytes(&std::fs::read(path).unwrap()).unwrap();
+        let pad = |name| Gait::named(&pack, name).unwrap().pad;
+        assert_eq!((pad("run").right_trigger, pad("crawl").left_trigger), (1.0, 1.0));
+        assert!(pad("zombie_walk").buttons.contains(Button::RightShoulder));
+        assert!(pad("strafe").buttons.contains(Button::RightStick));
+        assert_eq!(pad("walk"), GamepadState { left_stick: [0.0, 1.0], ..GamepadState::default() });
     }
 }
