@@ -15,6 +15,7 @@ mod motion;
 mod npy;
 mod pickle;
 mod pickle_machine;
+mod punch;
 mod side_steps;
 
 pub use error::ClipError;

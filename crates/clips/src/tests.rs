@@ -264,6 +264,25 @@ fn side_steps_go_left_in_a_cycle_and_plant_their_feet() {
 }
 
 #[test]
+fn a_punch_reaches_ahead_and_ends_as_it_begins() {
+    let clip = still(2).punch().unwrap();
+    assert!(!clip.looping && (clip.duration() - 1.35).abs() < 1e-3, "{}", clip.duration());
+    let [first, last] = [&clip.local_rotations[0], clip.local_rotations.last().unwrap()];
+    assert!(first.iter().zip(last).all(|(a, b)| a.angle_between(*b) < 1e-3));
+    // Where a fist is from its shoulder at the moment of the longest reach, the arms 0.3 m long each.
+    let fist = |side: &str| {
+        let rotations = clip.sample(0.65).1;
+        let [torso, upper, lower] =
+            ["torso".into(), format!("{side}_upper_arm"), format!("{side}_lower_arm")]
+                .map(|name: String| rotations[body(&name)]);
+        torso * (upper * (Vec3::NEG_Z + lower * Vec3::NEG_Z)) * 0.3
+    };
+    let (strikes, guards) = (fist("right"), fist("left"));
+    assert!(strikes.truncate().length() > 0.55 && strikes.z.abs() < 0.2, "{strikes}");
+    assert!(guards.truncate().length() < 0.45, "{guards}");
+}
+
+#[test]
 fn side_steps_need_legs() {
     let mut clip = still(2);
     clip.bodies = clip.bodies.iter().map(|name| name.replace("left_shin", "calf")).collect();

@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use glam::Vec2;
 use physics::{Model, PhysicsCharacter};
-use policy_core::{CharacterPack, CharacterState, Command, SkillEnd, SkillId};
+use policy_core::{BodyId, CharacterPack, CharacterState, Command, Heading, Skeleton, SkillEnd, SkillId};
 use random::Rng;
 use random::limp::drop_limp;
 use rayon::prelude::*;
@@ -49,7 +49,7 @@ impl RateReport {
     }
 }
 
-/// Tries of an episodic skill, and how high the feet go while it runs: medians over the tries.
+/// Tries of an episodic skill, and how high the feet and how far the hands go while it runs: medians over the tries.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
 pub struct SkillReport {
     /// How many went well.
@@ -61,23 +61,37 @@ pub struct SkillReport {
     pub jump_m: Option<f32>,
     /// Seconds in which both feet are off the ground.
     pub air_s: Option<f32>,
+    /// Greatest horizontal distance of a hand ahead of the root, metres: how far it punches. `None` without bodies of such a name.
+    pub hand_m: Option<f32>,
 }
 
-/// What the feet do while a skill runs.
+/// What the limbs do while a skill runs.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-struct Feet {
+struct Limbs {
     highest: f32,
     lower: f32,
     air_secs: f32,
+    hand: Option<f32>,
 }
 
-impl Feet {
+impl Limbs {
+    /// With the hands where they are now.
+    fn reaching(mut self, state: &CharacterState, hands: &[BodyId]) -> Self {
+        let root = state.root();
+        let ahead = Heading::from_rotation(root.rotation).direction();
+        for hand in hands {
+            let from_root = (state.body(*hand).position - root.position).truncate().dot(ahead);
+            self.hand = Some(self.hand.map_or(from_root, |most| most.max(from_root)));
+        }
+        self
+    }
+
     /// A tick later, with the lowest points of the feet so high above the ground.
     fn after(self, heights: impl Iterator<Item = f32>) -> Self {
         let [low, high] = heights.fold([f32::INFINITY, 0.0], |[low, high], h| [h.min(low), h.max(high)]);
         let low = if low.is_finite() { low } else { 0.0 };
         let air_secs = self.air_secs + if low > OFF_GROUND_METRES { TICK_SECS } else { 0.0 };
-        Self { highest: self.highest.max(high), lower: self.lower.max(low), air_secs }
+        Self { highest: self.highest.max(high), lower: self.lower.max(low), air_secs, ..self }
     }
 }
 
@@ -176,12 +190,13 @@ pub fn measure_skill(model: &Model, pack: &Arc<CharacterPack>, skill: SkillId, t
     let tries: Vec<_> =
         (0..tries).into_par_iter().map(|i| comes_back(model, pack, skill, i as u64)).collect();
     let rates: Vec<_> = tries.iter().map(|(well, ended, _)| (*well, *ended)).collect();
-    let of = |number: fn(&Feet) -> f32| median(tries.iter().map(|(_, _, feet)| Some(number(feet))));
+    let of = |number: fn(&Limbs) -> Option<f32>| median(tries.iter().map(|(_, _, limbs)| number(limbs)));
     SkillReport {
         rate: RateReport::of(&rates),
-        foot_m: of(|feet| feet.highest),
-        jump_m: of(|feet| feet.lower),
-        air_s: of(|feet| feet.air_secs),
+        foot_m: of(|limbs| Some(limbs.highest)),
+        jump_m: of(|limbs| Some(limbs.lower)),
+        air_s: of(|limbs| Some(limbs.air_secs)),
+        hand_m: of(|limbs| limbs.hand),
     }
 }
 
@@ -191,25 +206,34 @@ pub(crate) fn ended_well(pack: &CharacterPack, skill: SkillId, end: SkillEnd) ->
     end == if by_time { SkillEnd::TimeLimit } else { SkillEnd::Recognised }
 }
 
+/// Bodies whose names end in `hand`.
+fn hands(skeleton: &Skeleton) -> Vec<BodyId> {
+    let bodies = skeleton.bodies().iter().enumerate();
+    bodies.filter(|(_, body)| body.name.ends_with("hand")).map(|(i, _)| BodyId::new(i)).collect()
+}
+
 fn comes_back(
     model: &Model,
     pack: &Arc<CharacterPack>,
     skill: SkillId,
     seed: u64,
-) -> (bool, Option<f32>, Feet) {
+) -> (bool, Option<f32>, Limbs) {
     let back = pack.skills()[skill.index()].returns_to;
     let mut eval = EvalCharacter::new(model, pack, &pack.graph().node(back).name);
     let mut rng = Rng::new(seed, 13);
     let start = ((SETTLE_SECS + rng.range(0.0, 1.0)) / TICK_SECS) as u32;
-    let (mut ended, mut feet) = (None, Feet::default());
+    let (mut ended, mut limbs) = (None, Limbs::default());
+    let hands = hands(pack.skeleton());
     for tick in 0..start + ((SKILL_SECS + 1.0) / TICK_SECS) as u32 {
         let command = Command { skill: (tick == start).then_some(skill), ..eval.ahead(back) };
         if !eval.tick(&command) || (tick < start && eval.controller.report().fallen) {
-            return (false, ended, feet);
+            return (false, ended, limbs);
         }
         let report = eval.controller.report();
         if report.skill.is_some() {
-            feet = feet.after(pack.skeleton().feet().iter().map(|foot| eval.character.clearance_of(*foot)));
+            let feet = pack.skeleton().feet().iter();
+            limbs = limbs.after(feet.map(|foot| eval.character.clearance_of(*foot)));
+            limbs = limbs.reaching(&eval.state, &hands);
         }
         if let Some((skill, end)) = report.skill_ended
             && ended_well(pack, skill, end)
@@ -217,7 +241,7 @@ fn comes_back(
             ended = Some((tick - start) as f32 * TICK_SECS);
         }
     }
-    (ended.is_some_and(|secs| secs <= SKILL_SECS) && eval.pelvis_height() > 0.65, ended, feet)
+    (ended.is_some_and(|secs| secs <= SKILL_SECS) && eval.pelvis_height() > 0.65, ended, limbs)
 }
 
 #[cfg(test)]
@@ -227,8 +251,8 @@ mod tests {
     #[test]
     fn a_kick_lifts_one_foot_and_a_jump_both() {
         let kick = [[0.0, 0.0], [0.0, 0.9], [0.02, 0.5], [0.0, 0.0]];
-        let feet = kick.iter().fold(Feet::default(), |feet, heights| feet.after(heights.iter().copied()));
-        assert_eq!(feet, Feet { highest: 0.9, lower: 0.02, air_secs: TICK_SECS });
-        assert_eq!(Feet::default().after(std::iter::empty()), Feet::default(), "a character without feet");
+        let feet = kick.iter().fold(Limbs::default(), |limbs, heights| limbs.after(heights.iter().copied()));
+        assert_eq!(feet, Limbs { highest: 0.9, lower: 0.02, air_secs: TICK_SECS, hand: None });
+        assert_eq!(Limbs::default().after(std::iter::empty()), Limbs::default(), "a character without feet");
     }
 }

@@ -77,13 +77,13 @@ pub struct Bindings {
 
 impl Default for Bindings {
     /// Stick and right trigger `speed`, left trigger `stance`, right shoulder `style`, right stick pressed `strafe`; south `get_up`, east `roll`, north
-    /// `jump`, west `kick`.
+    /// `jump`, west `punch`.
     fn default() -> Self {
         let skills = [
             (Button::South, "get_up"),
             (Button::East, "roll"),
             (Button::North, "jump"),
-            (Button::West, "kick"),
+            (Button::West, "punch"),
         ];
         let [style, strafe] = [Button::RightShoulder, Button::RightStick].map(Control::Button);
         Self {

@@ -114,3 +114,24 @@ fn getting_up_that_was_asked_for_in_a_roll_is_refused_once_the_roll_has_set_the_
     assert_eq!(controller.report().skill_refused, Some((get_up, Refusal::Upright)));
     assert_eq!(controller.report().pending_skill, None);
 }
+
+#[test]
+fn a_skill_that_needs_a_slow_character_waits_while_it_gathers_speed_again() {
+    let mut manifest = common::manifest();
+    manifest.skills[0].maximum_speed_mps = Some(0.7);
+    let pack = Arc::new(CharacterPack::from_parts(manifest, common::tensors(-4.0)).unwrap());
+    let roll = pack.skill_named("roll");
+    // The skill starts out of a walk, and the character stands.
+    let mut controller = Controller::new(pack);
+    let mut tick = |speed: f32, skill| {
+        let mut state = standing();
+        state.bodies[0].linear_velocity.x = speed;
+        controller.tick(&state, &Command { skill, ..Command::default() }, DT);
+        controller.report().skill_started
+    };
+    assert_eq!(tick(0.05, roll), None);
+    for _ in 0..30 {
+        assert_eq!(tick(0.4, None), None, "it tips over");
+    }
+    assert_eq!(tick(0.05, None), roll, "it has caught itself");
+}

@@ -1,7 +1,7 @@
 //! A player: a gamepad or the keyboard becomes commands, through policy-core's mapper.
 //!
 //! Real gamepads need the feature `pads`, or Bevy's own `bevy_gilrs`. Without one the keys are: W A S D to walk, Shift faster, C lower,
-//! Q another style, E roll, Space get up, F jump, G kick.
+//! Q another style, E roll, Space get up, F jump, G punch.
 
 use bevy::prelude::*;
 use policy_core::{Bindings, Button, CommandMapper, GamepadState, Heading};

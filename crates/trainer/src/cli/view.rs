@@ -29,6 +29,9 @@ pub(crate) struct Arguments {
     /// Make steps to the left at this speed, metres per second, of its first pose.
     #[arg(long, value_name = "MPS", value_parser = side_steps)]
     side_steps: Option<f32>,
+    /// Make a punch of its first pose.
+    #[arg(long, conflicts_with = "side_steps")]
+    punch: bool,
     /// File to write the poses to: JSON, one list of `qpos` a control tick.
     #[arg(long)]
     poses: Option<PathBuf>,
@@ -71,6 +74,7 @@ pub(crate) fn run(model: &Model, folder: impl Fn() -> Result<ClipFolder>, a: &Ar
         reversed: a.reversed,
         pace: a.pace,
         side_steps_mps: a.side_steps,
+        punch: a.punch,
         ..ClipShare::whole(&clip.name)
     };
     let clip = made.made_of(clip)?;

@@ -44,6 +44,9 @@ pub struct ClipShare {
     /// Speed of steps to the left that are made of its first pose, metres per second; none for the clip itself.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub side_steps_mps: Option<f32>,
+    /// True for a punch that is made of its first pose.
+    #[serde(default, skip_serializing_if = "is_false")]
+    pub punch: bool,
 }
 
 impl ClipShare {
@@ -60,6 +63,7 @@ impl ClipShare {
             reversed: false,
             pace: 1.0,
             side_steps_mps: None,
+            punch: false,
         }
     }
 
@@ -74,13 +78,16 @@ impl ClipShare {
     /// What counts of a clip, and what is made of it.
     ///
     /// # Errors
-    /// When the clip is shorter than the seconds that count, or lacks the legs that side steps need.
+    /// When the clip is shorter than the seconds that count, or lacks the limbs that side steps or a punch need.
     pub fn made_of(&self, mut clip: Clip) -> Result<Clip, ClipError> {
         if let Some(seconds) = self.seconds {
             clip = clip.excerpt(seconds)?;
         }
         if let Some(mps) = self.side_steps_mps {
             clip = clip.side_steps(mps)?;
+        }
+        if self.punch {
+            clip = clip.punch()?;
         }
         if self.reversed {
             clip = clip.reversed();

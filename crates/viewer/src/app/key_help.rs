@@ -18,8 +18,8 @@ pub fn key_help(map: &KeyMap) -> Vec<(String, &'static str)> {
         (key(KeyAction::GetUp), "get up"),
         (key(KeyAction::Roll), "roll"),
         (
-            format!("{}, {}", key(KeyAction::Jump), key(KeyAction::Kick)),
-            "jump, kick, where the character can",
+            format!("{}, {}", key(KeyAction::Jump), key(KeyAction::Punch)),
+            "jump, punch, where the character can",
         ),
         (key(KeyAction::Shove), "knock the character over"),
     ];
@@ -53,7 +53,7 @@ pub const PAD: [(&str, &str); 11] = [
     ("left trigger", "lower: walk, crouch, crawl"),
     ("A or cross", "get up"),
     ("B or circle", "roll"),
-    ("Y or triangle, X or square", "jump, kick, where the character can"),
+    ("Y or triangle, X or square", "jump, punch, where the character can"),
     ("right shoulder", "hold: the other style, where the character has one"),
     ("left shoulder", "knock the character over"),
     ("d-pad up, down", "in the playground: throw a ball, put a prop down"),

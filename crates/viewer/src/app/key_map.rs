@@ -17,7 +17,8 @@ pub enum KeyAction {
     GetUp,
     Roll,
     Jump,
-    Kick,
+    #[serde(alias = "Kick")]
+    Punch,
     Shove,
     Strafe,
 }
@@ -35,7 +36,7 @@ impl KeyAction {
         (KeyAction::GetUp, Key::Space),
         (KeyAction::Roll, Key::R),
         (KeyAction::Jump, Key::J),
-        (KeyAction::Kick, Key::K),
+        (KeyAction::Punch, Key::K),
         (KeyAction::Shove, Key::V),
         (KeyAction::Strafe, Key::F),
     ];
@@ -54,7 +55,7 @@ impl KeyAction {
             KeyAction::GetUp => "get up",
             KeyAction::Roll => "roll",
             KeyAction::Jump => "jump",
-            KeyAction::Kick => "kick",
+            KeyAction::Punch => "punch",
             KeyAction::Shove => "knock over",
             KeyAction::Strafe => "strafe",
         }
@@ -133,8 +134,8 @@ mod tests {
         assert_eq!((map.key(KeyAction::Roll), map.key(KeyAction::Ahead)), (Key::W, Key::R));
         map.bind(KeyAction::Roll, Key::W);
         assert_eq!(map.key(KeyAction::Roll), Key::W);
-        map.bind(KeyAction::Kick, Key::Num1);
-        assert_eq!(map.key(KeyAction::Kick), Key::Num1);
+        map.bind(KeyAction::Punch, Key::Num1);
+        assert_eq!(map.key(KeyAction::Punch), Key::Num1);
     }
 
     #[test]

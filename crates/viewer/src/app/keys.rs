@@ -84,7 +84,7 @@ impl Keys {
             (KeyAction::GetUp, Button::South),
             (KeyAction::Roll, Button::East),
             (KeyAction::Jump, Button::North),
-            (KeyAction::Kick, Button::West),
+            (KeyAction::Punch, Button::West),
             (KeyAction::Style, Button::RightShoulder),
             (KeyAction::Strafe, Button::RightStick),
             (KeyAction::Shove, SHOVE_BUTTON),

@@ -147,9 +147,9 @@ fn caps(app: &App) -> Vec<Cap> {
         let told = "Jumps. A character that runs slows down first.";
         caps.push(cap(named("Y", key(KeyAction::Jump)), "jump", told, pressed(Button::North)));
     }
-    if pack.skill_named("kick").is_some() {
-        let told = "Kicks. A character that runs slows down first.";
-        caps.push(cap(named("X", key(KeyAction::Kick)), "kick", told, pressed(Button::West)));
+    if pack.skill_named("punch").is_some() {
+        let told = "Punches. A character that runs slows down first.";
+        caps.push(cap(named("X", key(KeyAction::Punch)), "punch", told, pressed(Button::West)));
     }
     if pack.recovery().is_some() {
         let told = "Gets up. After a fall that comes by itself.";
