@@ -1,0 +1,59 @@
+use policy_core::ControllerConfig;
+use random::Rng;
+
+use super::super::super::config::EnvironmentConfig;
+use super::super::super::demonstrations::Demonstrations;
+use super::super::super::graph::{GraphNode, TrainingGraph};
+use super::super::super::made_up::{shipped, still};
+use super::super::super::termination::TerminationHeights;
+use super::*;
+
+/// Speeds at the starts of 16 tries of a skill, and how many of them track a clip.
+fn starts(speed_mps: f32, maximum_speed_mps: Option<f32>, tracking_weight: f32) -> (Vec<f32>, usize) {
+    let (model, pack, normalisers) = shipped();
+    let clips = Demonstrations::from_clips(&[(still(30), 1.0, false)], &model, &normalisers.frame).unwrap();
+    let mut config = EnvironmentConfig::default();
+    (config.reward.tracking_weight, config.command.speed_mps) = (tracking_weight, speed_mps);
+    config.reset.in_play = Some(InPlayConfig { share: 1.0, maximum_speed_mps });
+    let gaits = Controller::with_config(pack, ControllerConfig { auto_recover: false, ..Default::default() });
+    let context = EnvContext {
+        config: &config,
+        skeleton: model.skeleton(),
+        graph: &TrainingGraph::alone(vec![GraphNode::new("learns", &config, 1.0)], 0).unwrap(),
+        demonstrations: &[&clips],
+        start_demonstrations: None,
+        hand_over: &[],
+        normalisers: &normalisers,
+        heights: &TerminationHeights::new(&config.termination, model.skeleton()).unwrap(),
+        pushed: &[],
+        company: Some(&gaits),
+    };
+    let mut env = Env::new(&model, &context, Rng::new(8, 0));
+    let (mut speeds, mut tracking) = (Vec::new(), 0);
+    for _ in 0..16 {
+        if env.start_in_play(&context) {
+            speeds.push(env.state.root().linear_velocity.truncate().length());
+            tracking += usize::from(env.tracks());
+        }
+    }
+    assert!(env.played.len() == KEPT, "{} starts are kept", env.played.len());
+    let without = EnvironmentConfig::default();
+    assert!(!env.start_in_play(&EnvContext { config: &without, ..context }));
+    (speeds, tracking)
+}
+
+#[test]
+fn a_skill_starts_where_a_character_is_slow_enough_and_tracks_its_clip_from_there() {
+    let (speeds, tracking) = starts(0.0, Some(0.5), 0.9);
+    assert!(speeds.len() >= 12 && tracking == speeds.len(), "{speeds:?}, {tracking}");
+    assert!(speeds.iter().all(|speed| *speed < 0.5) && speeds.iter().any(|speed| *speed > 0.1));
+}
+
+#[test]
+fn a_variant_that_stands_starts_where_the_stick_is_let_go_and_one_that_moves_anywhere() {
+    for speed_mps in [0.0, 1.2] {
+        let (speeds, tracking) = starts(speed_mps, None, 0.0);
+        assert!(speeds.len() >= 12 && tracking == 0, "{speeds:?}, {tracking}");
+        assert!(speeds.iter().any(|speed| *speed > 0.5), "{speeds:?}");
+    }
+}
