@@ -185,6 +185,15 @@ impl Recipe {
             None
         }
     }
+
+    /// Those of them that have to be trained before. Variants play with each other, so a variant plays with those that there are.
+    pub(crate) fn needs_trained(&self) -> &'static [&'static str] {
+        match self.driven_by() {
+            None => &[],
+            Some(_) if self.variant_of.is_some() => &MET,
+            Some((_, names)) => names,
+        }
+    }
 }
 
 #[cfg(test)]

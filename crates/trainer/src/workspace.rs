@@ -88,12 +88,8 @@ impl Workspace {
                 let hand_over =
                     r.first().environment.reset.hand_over.iter().map(|hand_over| &hand_over.skill);
                 let skills = r.parent.iter().chain(&r.variant_of).chain(r.paths.iter().flatten());
-                let driven_by = r
-                    .driven_by()
-                    .into_iter()
-                    .flat_map(|(_, gaits)| gaits.iter().copied())
-                    .filter(|name| *name != r.skill);
-                let mut needed = skills.chain(hand_over).map(String::as_str).chain(driven_by);
+                let played = r.needs_trained().iter().copied();
+                let mut needed = skills.chain(hand_over).map(String::as_str).chain(played);
                 needed.all(|p| ordered.iter().any(|o| o.skill == p))
             };
             let Some(skill) = left.values().find(|r| ready(r)).map(|r| r.skill.clone()) else {

@@ -18,8 +18,13 @@ impl Workspace {
     /// there is neither.
     pub(super) fn company(&self, recipe: &Recipe) -> Result<Option<Controller>> {
         let Some((needed_by, names)) = recipe.driven_by() else { return Ok(None) };
-        let plan = PackPlan::load(&self.recipes.join(PLAN))?
-            .only(|name| names.contains(&name) && name != recipe.skill);
+        let mut played = Vec::new();
+        for name in names.iter().filter(|name| **name != recipe.skill) {
+            if recipe.needs_trained().contains(name) || self.trained(name)?.is_some() {
+                played.push(*name);
+            }
+        }
+        let plan = PackPlan::load(&self.recipes.join(PLAN))?.only(|name| played.contains(&name));
         let pack = self.pack_of(&plan, needed_by)?;
         let start = pack.graph().node_named(WALK);
         let start = start.with_context(|| format!("expected a node {WALK} in {PLAN}, found none"))?;
