@@ -13,7 +13,7 @@ const HZ: f32 = 60.0;
 /// Length of a leg as a share of the height of a standing root.
 const LEG_SHARE: f32 = 0.95;
 
-/// A moment of the punch: angles over those of the standing pose, radians.
+/// A moment of the punch: angles added to those of the standing pose, radians.
 #[derive(Clone, Copy)]
 struct Key {
     secs: f32,
@@ -36,7 +36,7 @@ const GUARD: Key =
 const REACH: Key =
     Key { secs: 0.6, torso: [0.5, 0.12], strikes: [-1.45, -0.05], guards: [-0.6, -1.8], bend: 0.14 };
 
-/// How it passes: the elbow takes 0.3 s to straighten, for its damper holds it at 6.7 radians a second.
+/// Its moments in order. The elbow takes 0.3 s to straighten, for its damper holds it at 6.7 radians a second.
 const KEYS: [Key; 6] = [
     STANDS,
     GUARD,

@@ -86,12 +86,12 @@ struct Count {
     down_ticks: u32,
 }
 
-/// The skill that runs or ran last.
+/// The skill that runs, or that ended less than 3 s ago, and the ticks since then.
 #[derive(Clone, Copy, Debug, Default)]
 struct LastSkill(Option<(SkillId, u32)>);
 
 impl LastSkill {
-    /// The report before a fall is told apart from a skill that it starts: a start takes effect in the next tick.
+    /// Looks at the report of a tick. A skill that starts in it, as after a fall, has not run yet.
     fn look(&mut self, trial: &Trial) {
         self.0 = self.0.map(|(skill, age)| (skill, age + 1)).filter(|(_, age)| *age < ticks(AFTER_SECS));
         let report = trial.controller.report();

@@ -60,7 +60,7 @@ const WAY_SECS: f32 = 3.0;
 /// Time between two directions on the way, seconds.
 const DIRECTION_SECS: [f32; 2] = [0.5, 2.0];
 
-/// Share of that time without a target: a strafing character that halts stands with its knees straight, and soon tips over.
+/// Share of those stretches without a target: a character that halts while it strafes stands on straight legs, and soon tips over.
 const HALT_SHARE: f32 = 0.3;
 
 /// Half of the characters that strafe turn on their way, at most so fast, radians a second.
