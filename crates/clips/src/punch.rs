@@ -36,7 +36,7 @@ const GUARD: Key =
 const REACH: Key =
     Key { secs: 0.6, torso: [0.5, 0.12], strikes: [-1.45, -0.05], guards: [-0.6, -1.8], bend: 0.14 };
 
-/// Its moments in order. The elbow takes 0.3 s to straighten, for its damper holds it at 6.7 radians a second.
+/// Its moments in order. It can't be much quicker: the damper of the humanoid's elbow holds it at 4 radians a second.
 const KEYS: [Key; 6] = [
     STANDS,
     GUARD,
