@@ -5,13 +5,11 @@ use std::sync::Arc;
 use glam::{Quat, Vec3};
 
 use crate::error::find_body;
+use crate::side_steps::LEG_SHARE;
 use crate::{Clip, ClipError};
 
 /// Frames a second.
 const HZ: f32 = 60.0;
-
-/// Length of a leg as a share of the height of a standing root.
-const LEG_SHARE: f32 = 0.95;
 
 /// A moment of the punch: angles added to those of the standing pose, radians.
 #[derive(Clone, Copy)]
@@ -58,10 +56,7 @@ impl Clip {
             [find("right_upper_arm")?, find("right_lower_arm")?],
             [find("left_upper_arm")?, find("left_lower_arm")?],
         ];
-        let legs = [
-            [find("right_thigh")?, find("right_shin")?, find("right_foot")?],
-            [find("left_thigh")?, find("left_shin")?, find("left_foot")?],
-        ];
+        let legs = [self.leg("right")?, self.leg("left")?];
         // A clip that was checked has a frame.
         let (pose, root) = (&self.local_rotations[0], self.root_positions[0]);
         let mut clip = Self {

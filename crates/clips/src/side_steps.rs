@@ -24,7 +24,7 @@ const SPREAD: f32 = 0.13;
 const BEND: [f32; 2] = [0.15, 0.27];
 
 /// Length of a leg as a share of the height of a standing root.
-const LEG_SHARE: f32 = 0.95;
+pub(crate) const LEG_SHARE: f32 = 0.95;
 
 /// Rotations of thigh, shin and foot over those of the standing pose.
 struct Leg {
@@ -70,7 +70,8 @@ impl Clip {
         clip.checked()
     }
 
-    fn leg(&self, side: &str) -> Result<[usize; 3], ClipError> {
+    /// Thigh, shin and foot of a side.
+    pub(crate) fn leg(&self, side: &str) -> Result<[usize; 3], ClipError> {
         let find = |part: &str| find_body(&self.name, &self.bodies, &format!("{side}_{part}"));
         Ok([find("thigh")?, find("shin")?, find("foot")?])
     }

@@ -6,7 +6,7 @@ use super::Section;
 use super::encounters::{RACE_SECS, nominal_secs};
 use super::player::STRAIGHT_COORDINATES;
 use super::press::bound_buttons;
-use super::response::WAYS;
+use super::response::{STOP_SECS, WAYS};
 use super::stress::{CASE_COUNT, GET_UP_SECS, GROUND_COUNT, PadKind, nominal_trials};
 use super::trial::Gait;
 
@@ -138,7 +138,7 @@ impl Effort {
             Section::Skills => of(self.drops, 8.0 + 6.0 * pack.skills().len().saturating_sub(1) as f32),
             Section::Turns => of(gaits * self.settled, 6.0 + 8.0 * 4.0),
             Section::Starts => of(self.settled, 7.5),
-            Section::Stops => of(gaits * self.settled, 3.5),
+            Section::Stops => of(gaits * self.settled, STOP_SECS),
             Section::Straight => of(paths * STRAIGHT_COORDINATES * self.straight, 9.0),
             Section::Strafe if graph.path_named("strafe").is_none() => 0.0,
             Section::Strafe => of(WAYS * self.settled, 8.0),

@@ -141,6 +141,7 @@ fn shoves_three_times_a_second_do_not_add_up() {
     let mut sim = simulation();
     let torso = torso(&sim);
     let (mut shoves, mut was_pushed) = (0, false);
+    let (mut fastest, mut lowest) = (0.0_f32, f32::INFINITY);
     for tick in 0..1800 {
         let before = sim.player().state.root().linear_velocity.length();
         let pad = if tick % 10 < 3 { &held } else { &FORWARD };
@@ -151,8 +152,12 @@ fn shoves_three_times_a_second_do_not_add_up() {
             assert!(before < 5.01, "a shove in tick {tick}, at {before} m/s");
         }
         was_pushed = is_pushed;
+        let torso = sim.player().state.body(torso);
+        fastest = fastest.max(torso.linear_velocity.length());
+        lowest = lowest.min(torso.position.z);
     }
     assert!(shoves > 3, "{shoves}");
+    assert!(fastest < 12.0 && lowest > -0.05, "{fastest} m/s, {lowest} m");
 }
 
 #[test]

@@ -7,6 +7,7 @@ mod straight;
 mod turn;
 
 pub use start::{StartReport, measure_starts};
+pub(super) use stop::NOMINAL_SECS as STOP_SECS;
 pub use stop::{StopReport, measure_stops};
 pub(crate) use strafe::WAYS;
 pub use strafe::{StrafeReport, measure_strafe};

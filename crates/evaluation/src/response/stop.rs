@@ -19,7 +19,7 @@ const LIMIT_SECS: f32 = 12.0;
 const WATCHED_SECS: f32 = 3.0;
 
 /// A stop by rule of thumb, seconds.
-const NOMINAL_SECS: f32 = 1.5 + WATCHED_SECS;
+pub(in super::super) const NOMINAL_SECS: f32 = 1.5 + WATCHED_SECS;
 
 /// Medians over stops; `None` when half of them never come.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]

@@ -4,6 +4,7 @@
 use clips::placed;
 use physics_bridge::{Pose, Terrain, WALKING_START_MPS};
 use policy_core::{Heading, JointTargets};
+use random::Rng;
 use random::limp::{go_limp, random_attitude};
 use serde::{Deserialize, Serialize};
 
@@ -72,6 +73,15 @@ const DROP_SHARE: f32 = 0.85;
 
 /// Draws of a start state until one does not fail at once; the last one is taken as it is.
 const START_TRIES: usize = 4;
+
+/// Keeps one more, in place of any where there are `most` already.
+fn keep_one<T>(kept: &mut Vec<T>, most: usize, one: T, rng: &mut Rng) {
+    if kept.len() < most {
+        kept.push(one);
+    } else {
+        kept[rng.index(most)] = one;
+    }
+}
 
 impl Env {
     /// Starts an episode. The first one begins anywhere in its time, later ones at most a quarter of it late: without random

@@ -6,10 +6,8 @@ use random::Rng;
 
 use super::super::config::EnvironmentConfig;
 use super::super::demonstrations::Demonstrations;
-use super::super::graph::{GraphNode, TrainingGraph};
-use super::super::made_up::still;
+use super::super::made_up::{Setting, still};
 use super::super::normalisers::Normalisers;
-use super::super::termination::TerminationHeights;
 use super::*;
 
 #[test]
@@ -22,19 +20,10 @@ fn a_standing_start_is_upright_and_moves_ahead() {
     let clips = Demonstrations::from_clips(&[(tilted, 1.0, false)], &model, &normalisers.frame).unwrap();
     let mut config = EnvironmentConfig::default();
     (config.reset.standing_share, config.reward.tracking_weight) = (1.0, 0.5);
-    let context = EnvContext {
-        config: &config,
-        skeleton: model.skeleton(),
-        graph: &TrainingGraph::alone(vec![GraphNode::new("walk", &config, 1.0)], 0).unwrap(),
-        demonstrations: &[&clips],
-        start_demonstrations: None,
-        hand_over: &[],
-        normalisers: &normalisers,
-        heights: &TerminationHeights::new(&config.termination, model.skeleton()).unwrap(),
-        pushed: &[],
-        company: None,
-    };
-    let mut env = Env::new(&model, &context, Rng::new(5, 0));
+    let setting = Setting::alone("walk", (model, normalisers), config);
+    let demonstrations = [&clips];
+    let context = setting.context(&demonstrations);
+    let mut env = Env::new(&setting.model, &context, Rng::new(5, 0));
     let mut speeds = Vec::new();
     for _ in 0..20 {
         env.reset(&context, false);
@@ -60,21 +49,12 @@ fn a_timed_skill_sees_the_second_of_its_clip_in_every_start() {
     let mut config = EnvironmentConfig::default();
     (config.command.clock_seconds, config.reward.tracking_weight) = (1.5, 0.9);
     (config.reset.standing_share, config.reset.other_clips_share) = (0.3, 0.3);
-    let context = EnvContext {
-        config: &config,
-        skeleton: model.skeleton(),
-        graph: &TrainingGraph::alone(vec![GraphNode::new("kick", &config, 1.0)], 0).unwrap(),
-        demonstrations: &[&clips],
-        start_demonstrations: Some(&clips),
-        hand_over: &[],
-        normalisers: &normalisers,
-        heights: &TerminationHeights::new(&config.termination, model.skeleton()).unwrap(),
-        pushed: &[],
-        company: None,
-    };
-    let mut env = Env::new(&model, &context, Rng::new(6, 0));
+    let setting = Setting::alone("kick", (model, normalisers), config);
+    let demonstrations = [&clips];
+    let context = EnvContext { start_demonstrations: Some(&clips), ..setting.context(&demonstrations) };
+    let mut env = Env::new(&setting.model, &context, Rng::new(6, 0));
     let mut input = vec![0.0; context.critic_inputs()];
-    let at = model.skeleton().observation_len();
+    let at = context.skeleton.observation_len();
     // How far the hand of the clock has gone, in [0, 1].
     let mut share = |env: &Env| {
         env.observe_into(&context, &mut input);

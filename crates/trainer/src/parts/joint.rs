@@ -116,7 +116,7 @@ impl Workspace {
             |n: &str| n == skill.policy || n == skill.returns_to || Some(n) == skill.discriminator.as_deref();
         let mut plan = plan.only(needed);
         plan.skills.retain(|s| s.name == *name);
-        let pack = self.pack_of(&plan, &format!("starts at the end of {name}"))?;
+        let pack = self.pack_of(plan, &format!("starts at the end of {name}"), |_| true)?;
         let config = ControllerConfig {
             auto_recover: false,
             assist_rise: false,

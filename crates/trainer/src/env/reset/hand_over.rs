@@ -76,8 +76,7 @@ mod tests {
     use super::super::super::config::EnvironmentConfig;
     use super::super::super::demonstrations::Demonstrations;
     use super::super::super::graph::{GraphNode, TrainingGraph};
-    use super::super::super::made_up::{shipped, still};
-    use super::super::super::termination::TerminationHeights;
+    use super::super::super::made_up::{Setting, shipped, still};
     use super::*;
     use random::Rng;
 
@@ -98,19 +97,10 @@ mod tests {
             node: 1,
             out_of: Vec::new(),
         };
-        let context = EnvContext {
-            config: &config,
-            skeleton: model.skeleton(),
-            graph: &graph,
-            demonstrations: &[&clips, &clips],
-            start_demonstrations: None,
-            hand_over: &[],
-            normalisers: &normalisers,
-            heights: &TerminationHeights::new(&config.termination, model.skeleton()).unwrap(),
-            pushed: &[],
-            company: None,
-        };
-        let mut env = Env::new(&model, &context, Rng::new(7, 0));
+        let setting = Setting::new((model, normalisers), config, graph);
+        let demonstrations = [&clips, &clips];
+        let context = setting.context(&demonstrations);
+        let mut env = Env::new(&setting.model, &context, Rng::new(7, 0));
         let mut up = 0;
         for _ in 0..8 {
             if env.start_at_hand_over(&context, &hand_over) {

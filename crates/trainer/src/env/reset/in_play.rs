@@ -9,6 +9,7 @@ use serde::{Deserialize, Serialize};
 
 use super::super::command::{Command, DT_SECS};
 use super::super::env::{Env, EnvContext};
+use super::keep_one;
 
 /// The gaits that lead up to a start, their variants, and a skill that may have ended just before it.
 pub(crate) const PLAYED: &[&str] = &[
@@ -69,7 +70,7 @@ const FACING_RATE: f32 = 3.0;
 /// Longest rest after it, seconds. Half of the starts have none.
 const REST_SECS: f32 = 3.0;
 
-/// Where the stick is let go, the policy that learns takes over within this time, for in a game it is blended in, seconds.
+/// Longest time from letting go of the stick until the policy that learns takes over, seconds: a game blends it in.
 const LET_GO_SECS: f32 = 0.3;
 
 /// Speed of a character that stands, metres per second.
@@ -90,8 +91,8 @@ const KEPT_SHARE: f32 = 0.8;
 pub struct InPlayConfig {
     /// Share of episodes.
     pub share: f32,
-    /// Speed below which the skill starts, as in the plan of the pack, metres per second. None for a variant: one of a gait that stands
-    /// starts when the stick is let go, one of a gait that moves out of any other gait, half of the time out of a stand.
+    /// Speed below which the skill starts, as in the plan of the pack, metres per second. A variant has none. A variant of a gait that
+    /// stands starts shortly after the stick is let go; one of a gait that moves starts out of a stand, or in the middle of any gait.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub maximum_speed_mps: Option<f32>,
 }
@@ -115,19 +116,14 @@ impl Env {
             self.character.sense_into(&mut self.state);
         } else if self.play_up_to_start(context, &config, played.clone()) {
             let start = (self.character.save(), self.history.clone());
-            if self.played.len() < KEPT {
-                self.played.push(start);
-            } else {
-                let index = self.rng.index(KEPT);
-                self.played[index] = start;
-            }
+            keep_one(&mut self.played, KEPT, start, &mut self.rng);
         } else {
             return false;
         }
         self.begin_in_play(context)
     }
 
-    /// Plays until a game would start the skill, or lets go of the stick; false when the character falls, or takes too long.
+    /// Plays up to the moment of the start. False when the physics diverges or that moment does not come.
     fn play_up_to_start(
         &mut self,
         context: &EnvContext<'_>,

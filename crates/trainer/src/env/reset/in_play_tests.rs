@@ -3,9 +3,7 @@ use random::Rng;
 
 use super::super::super::config::EnvironmentConfig;
 use super::super::super::demonstrations::Demonstrations;
-use super::super::super::graph::{GraphNode, TrainingGraph};
-use super::super::super::made_up::{shipped, still};
-use super::super::super::termination::TerminationHeights;
+use super::super::super::made_up::{Setting, shipped, still};
 use super::*;
 
 /// Speeds at the starts of 16 tries of a skill, and how many of them track a clip.
@@ -16,19 +14,10 @@ fn starts(speed_mps: f32, maximum_speed_mps: Option<f32>, tracking_weight: f32) 
     (config.reward.tracking_weight, config.command.speed_mps) = (tracking_weight, speed_mps);
     config.reset.in_play = Some(InPlayConfig { share: 1.0, maximum_speed_mps });
     let gaits = Controller::with_config(pack, ControllerConfig { auto_recover: false, ..Default::default() });
-    let context = EnvContext {
-        config: &config,
-        skeleton: model.skeleton(),
-        graph: &TrainingGraph::alone(vec![GraphNode::new("learns", &config, 1.0)], 0).unwrap(),
-        demonstrations: &[&clips],
-        start_demonstrations: None,
-        hand_over: &[],
-        normalisers: &normalisers,
-        heights: &TerminationHeights::new(&config.termination, model.skeleton()).unwrap(),
-        pushed: &[],
-        company: Some(&gaits),
-    };
-    let mut env = Env::new(&model, &context, Rng::new(8, 0));
+    let setting = Setting::alone("learns", (model, normalisers), config);
+    let demonstrations = [&clips];
+    let context = EnvContext { company: Some(&gaits), ..setting.context(&demonstrations) };
+    let mut env = Env::new(&setting.model, &context, Rng::new(8, 0));
     let (mut speeds, mut tracking) = (Vec::new(), 0);
     for _ in 0..16 {
         if env.start_in_play(&context) {

@@ -5,6 +5,7 @@ use policy_core::training::FrameHistory;
 use random::Rng;
 
 use super::super::command::Command;
+use super::keep_one;
 
 /// Ticks between the states that a character keeps of an episode.
 const EVERY_TICKS: u32 = 15;
@@ -72,11 +73,7 @@ impl PreFailureStates {
             return;
         }
         let (_, saved) = early.clone().nth(rng.index(count)).expect("an index below the count");
-        if self.starts.len() < STARTS {
-            self.starts.push(saved.clone());
-        } else {
-            self.starts[rng.index(STARTS)] = saved.clone();
-        }
+        keep_one(&mut self.starts, STARTS, saved.clone(), rng);
     }
 
     /// Takes a start out.
