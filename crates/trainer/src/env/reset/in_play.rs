@@ -97,7 +97,7 @@ pub struct InPlayConfig {
     pub maximum_speed_mps: Option<f32>,
 }
 
-/// Starts that were played, to return to.
+/// Starts that were played and have not failed, to return to.
 pub(in super::super) type PlayedStarts = Vec<(Snapshot, FrameHistory)>;
 
 impl Env {
@@ -109,18 +109,23 @@ impl Env {
         if !self.rng.chance(config.share) {
             return false;
         }
-        if self.played.len() == KEPT && self.rng.chance(KEPT_SHARE) {
+        let returns = self.played.len() == KEPT && self.rng.chance(KEPT_SHARE);
+        if returns {
             let (snapshot, history) = &self.played[self.rng.index(KEPT)];
             self.character.restore(snapshot).expect("a snapshot of the same character");
             self.history.clone_from(history);
             self.character.sense_into(&mut self.state);
-        } else if self.play_up_to_start(context, &config, played.clone()) {
-            let start = (self.character.save(), self.history.clone());
-            keep_one(&mut self.played, KEPT, start, &mut self.rng);
-        } else {
+        } else if !self.play_up_to_start(context, &config, played.clone()) {
             return false;
         }
-        self.begin_in_play(context)
+        if !self.begin_in_play(context) {
+            return false;
+        }
+        if !returns {
+            let start = (self.character.save(), self.history.clone());
+            keep_one(&mut self.played, KEPT, start, &mut self.rng);
+        }
+        true
     }
 
     /// Plays up to the moment of the start. False when the physics diverges or that moment does not come.
