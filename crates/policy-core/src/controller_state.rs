@@ -36,8 +36,6 @@ pub struct ControllerState {
     pub(crate) settle_secs: f32,
     /// Seconds that the pending skill has waited.
     pub(crate) pending_secs: f32,
-    /// Least speed of the root while it has waited, metres per second.
-    pub(crate) pending_mps: f32,
     /// What steering remembers.
     pub(crate) steering: SteeringState,
     /// What giving way remembers.
@@ -94,7 +92,6 @@ impl ControllerState {
             handover_secs: 0.0,
             settle_secs: 0.0,
             pending_secs: 0.0,
-            pending_mps: 0.0,
             steering: SteeringState::default(),
             give_way: GiveWayState::default(),
             unevenness: 0.0,
@@ -124,7 +121,6 @@ impl ControllerState {
         self.handover_secs = other.handover_secs;
         self.settle_secs = other.settle_secs;
         self.pending_secs = other.pending_secs;
-        self.pending_mps = other.pending_mps;
         self.steering = other.steering;
         self.give_way = other.give_way;
         self.unevenness = other.unevenness;
@@ -143,7 +139,6 @@ impl ControllerState {
         self.handover_secs = 0.0;
         self.settle_secs = 0.0;
         self.pending_secs = 0.0;
-        self.pending_mps = 0.0;
         self.steering = SteeringState::default();
         self.give_way = GiveWayState::default();
         self.unevenness = 0.0;
@@ -189,7 +184,6 @@ impl ControllerState {
             self.handover_secs,
             self.settle_secs,
             self.pending_secs,
-            self.pending_mps,
         ];
         let steering = [self.steering.velocity.x, self.steering.velocity.y, self.steering.trim];
         let give_way = [self.give_way.speed, self.give_way.pace, self.give_way.stop_secs];

@@ -61,6 +61,7 @@ extern crate std;
 mod action;
 mod actuation;
 mod agility;
+mod balance;
 mod batch;
 pub mod bindings;
 mod blend;

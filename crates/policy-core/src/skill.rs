@@ -37,7 +37,7 @@ pub struct Skill {
     /// Horizontal speed of the root below which it does not start, metres per second: a pending skill takes a run-up.
     pub minimum_speed_mps: f32,
     /// Horizontal speed of the root above which it does not start, metres per second: a pending skill waits until the character is
-    /// slow enough, gathers no speed, and has settled after another skill. Infinite for no such condition.
+    /// slow enough, does not tip over, and has settled after another skill. Infinite for no such condition.
     pub maximum_speed_mps: f32,
     /// Seconds in which the clock of a timed skill runs once ([`clock_input`]); `None` for a skill that sees the target.
     pub clock_seconds: Option<f32>,

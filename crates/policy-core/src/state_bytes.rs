@@ -15,7 +15,7 @@ use crate::skill::{Refusal, SkillEnd, SkillProgress};
 use crate::steering::side_of;
 
 /// First four bytes: `PSS` and the version.
-const VERSION: u32 = u32::from_le_bytes(*b"PSS\x07");
+const VERSION: u32 = u32::from_le_bytes(*b"PSS\x08");
 
 const POSITION_LEN: usize = 2 + 2 + 4;
 const BLEND_LEN: usize = 1 + MAX_BLEND_TERMS * (2 + 4 * MAX_LAYERS);
@@ -23,7 +23,7 @@ const SKILL_LEN: usize = 3;
 const PROGRESS_LEN: usize = SKILL_LEN + 4 + 4 + 1 + 4;
 const REPORT_LEN: usize =
     2 * POSITION_LEN + BLEND_LEN + 1 + 8 + PROGRESS_LEN + 2 * SKILL_LEN + 2 * (SKILL_LEN + 1) + 3;
-const FIXED_LEN: usize = 4 + REPORT_LEN + 8 + 2 + BLEND_LEN + 4 + SKILL_LEN + 16 + 12 + 12 + 20;
+const FIXED_LEN: usize = 4 + REPORT_LEN + 8 + 2 + BLEND_LEN + 4 + SKILL_LEN + 12 + 12 + 12 + 20;
 
 impl ControllerState {
     /// Number of bytes; one for all states of a pack.
@@ -50,7 +50,7 @@ impl ControllerState {
         w.skill(self.interrupted);
         w.floats(&self.targets);
         w.floats(&self.handover_from);
-        w.floats(&[self.handover_secs, self.settle_secs, self.pending_secs, self.pending_mps]);
+        w.floats(&[self.handover_secs, self.settle_secs, self.pending_secs]);
         let steering = self.steering;
         w.floats(&[steering.velocity.x, steering.velocity.y, steering.trim]);
         w.floats(&[self.give_way.speed, self.give_way.pace, self.give_way.stop_secs]);
@@ -94,7 +94,7 @@ impl ControllerState {
         r.floats(&mut self.targets);
         r.floats(&mut self.handover_from);
         (self.handover_secs, self.settle_secs) = (r.float(), r.float());
-        (self.pending_secs, self.pending_mps) = (r.float(), r.float());
+        self.pending_secs = r.float();
         let steering = &mut self.steering;
         (steering.velocity.x, steering.velocity.y) = (r.float(), r.float());
         steering.trim = r.float();

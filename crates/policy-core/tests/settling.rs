@@ -5,8 +5,10 @@ mod common;
 use std::sync::Arc;
 
 use common::{hand_over, standing};
-use policy_core::glam::Vec2;
-use policy_core::{CharacterPack, Command, Controller, ControllerConfig, Goal, GraphPosition, Refusal};
+use policy_core::glam::{Vec2, Vec3};
+use policy_core::{
+    CharacterPack, Command, Controller, ControllerConfig, Goal, GraphPosition, Refusal, Skeleton,
+};
 
 const DT: f32 = 1.0 / 30.0;
 
@@ -116,22 +118,34 @@ fn getting_up_that_was_asked_for_in_a_roll_is_refused_once_the_roll_has_set_the_
 }
 
 #[test]
-fn a_skill_that_needs_a_slow_character_waits_while_it_gathers_speed_again() {
+fn a_skill_that_needs_a_slow_character_waits_while_it_tips_over() {
     let mut manifest = common::manifest();
     manifest.skills[0].maximum_speed_mps = Some(0.7);
     let pack = Arc::new(CharacterPack::from_parts(manifest, common::tensors(-4.0)).unwrap());
     let roll = pack.skill_named("roll");
     // The skill starts out of a walk, and the character stands.
-    let mut controller = Controller::new(pack);
-    let mut tick = |speed: f32, skill| {
-        let mut state = standing();
-        state.bodies[0].linear_velocity.x = speed;
-        controller.tick(&state, &Command { skill, ..Command::default() }, DT);
-        controller.report().skill_started
-    };
-    assert_eq!(tick(0.05, roll), None);
-    for _ in 0..30 {
-        assert_eq!(tick(0.4, None), None, "it tips over");
+    let skeleton = Skeleton::humanoid();
+    for caught in [true, false] {
+        let mut controller = Controller::new(pack.clone());
+        let mut tick = |leans: f32, skill| {
+            let mut state = standing();
+            for foot in skeleton.feet() {
+                state.body_mut(*foot).position = Vec3::new(0.0, -leans, 0.07);
+            }
+            controller.tick(&state, &Command { skill, ..Command::default() }, DT);
+            controller.report().skill_started
+        };
+        assert_eq!(tick(0.2, roll), None);
+        for _ in 0..60 {
+            assert_eq!(tick(0.2, None), None, "it tips over");
+        }
+        if caught {
+            assert_eq!(tick(0.02, None), roll, "it has caught itself");
+        } else {
+            assert!(
+                (0..30).any(|_| tick(0.2, None) == roll),
+                "one that has not fallen by then stands like that"
+            );
+        }
     }
-    assert_eq!(tick(0.05, None), roll, "it has caught itself");
 }

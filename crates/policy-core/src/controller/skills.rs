@@ -5,6 +5,7 @@ use alloc::sync::Arc;
 use glam::Vec2;
 
 use super::Controller;
+use crate::balance::is_balanced;
 use crate::blend::Blend;
 use crate::command::{Command, Goal};
 use crate::controller_state::ControllerState;
@@ -20,11 +21,8 @@ use crate::state::CharacterState;
 /// Longest time that a requested skill stays pending, seconds.
 const LONGEST_PENDING_SECS: f32 = 4.0;
 
-/// A root that is faster by this than it has been while the skill waited gathers speed again, metres per second.
-const TIPPING_MPS: f32 = 0.04;
-
-/// The speed that it has been at least counts for less as time goes by, metres per second squared.
-const TIPPING_FADES_MPS2: f32 = 0.1;
+/// A skill that needs a character that comes to rest above its feet waits so long for it, seconds: one of another build may stand otherwise.
+const LONGEST_UNBALANCED_SECS: f32 = 2.5;
 
 /// A recovery that takes so long and is still may be stuck, seconds: a policy without noise that rests against something stays
 /// there for good.
@@ -121,10 +119,7 @@ impl Controller {
         if let Some(skill) = request {
             match self.refusal(skill, heights) {
                 Some(why) => self.state.report.skill_refused = Some((skill, why)),
-                None => {
-                    (self.state.report.pending_skill, self.state.pending_secs) = (Some(skill), 0.0);
-                    self.state.pending_mps = state.root().linear_velocity.truncate().length();
-                }
+                None => (self.state.report.pending_skill, self.state.pending_secs) = (Some(skill), 0.0),
             }
         }
         let Some(pending) = self.state.report.pending_skill else { return };
@@ -139,11 +134,11 @@ impl Controller {
         }
         let skill = &self.pack.skills()[pending.index()];
         let speed = state.root().linear_velocity.truncate().length();
-        let gathers_speed = speed > self.state.pending_mps + TIPPING_MPS;
-        self.state.pending_mps = (self.state.pending_mps + TIPPING_FADES_MPS2 * dt).min(speed);
         let [least, most] = [skill.minimum_speed_mps, skill.maximum_speed_mps];
-        // One without conditions starts in any state. On the way to a stand a body that gathers speed tips over.
-        let calm = most.is_infinite() || (speed <= most && self.state.settle_secs == 0.0 && !gathers_speed);
+        let stands =
+            || self.state.pending_secs > LONGEST_UNBALANCED_SECS || is_balanced(self.pack.skeleton(), state);
+        // One without conditions starts in any state.
+        let calm = most.is_infinite() || (speed <= most && self.state.settle_secs == 0.0 && stands());
         let in_range = speed >= least && calm;
         if in_range && skill.starts_from(self.state.report.position.nearest_node()) {
             return self.start_skill(pending);
