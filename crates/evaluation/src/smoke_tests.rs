@@ -59,6 +59,7 @@ fn pack(falls: bool) -> Arc<CharacterPack> {
         rough_ground: None,
         agile: None,
         steady: None,
+        resting: None,
         origin: "made up".into(),
     };
     let edge = |a: &str, b: &str| EdgeEntry {

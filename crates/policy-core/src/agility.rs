@@ -1,5 +1,6 @@
 //! Agility: while a character does not move yet as it is asked to, a gait is blended with its agile variant; once it has
-//! done as it is asked to for a while, with its steady variant.
+//! done as it is asked to for a while, with its steady variant; where it has no target and stays in a gait that moves, with its resting
+//! variant.
 //!
 //! A gait that turns, starts or stops quickly looks hurried while it walks straight ahead. So the variant acts in the moments in which
 //! it is needed, and not at all once the character goes as it is asked to; without other variants the gait then acts with the bits that it
@@ -33,6 +34,9 @@ const CROSS_SECS: [f32; 2] = [0.1, 0.3];
 /// Time in which a character becomes steady, and in which that is over, seconds.
 const STEADY_SECS: [f32; 2] = [1.6, 0.06];
 
+/// Time from a gait that moves to its resting variant, and back, seconds.
+const REST_SECS: [f32; 2] = [0.1, 0.1];
+
 /// From where to where on the way to steadiness the steady variant comes in. First the gait itself brakes or gathers speed.
 const COMES_IN: [f32; 2] = [0.35, 1.0];
 
@@ -43,8 +47,10 @@ const OFF_LEVEL: [f32; 2] = [0.002, 0.008];
 /// How far a character is from what it is asked to do, and how long it has done it, each in [0, 1].
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct Urgency {
-    /// From going where it is asked to go, or from rest in a gait that it is to stay in: for the variants of gaits that move.
+    /// From going where it is asked to go: for the variants of gaits that move.
     pub(crate) to_move: f32,
+    /// 1 where it has no target and is to stay in a gait that moves: it is to rest there. Moving is all that the gait itself has learned.
+    pub(crate) to_rest: f32,
     /// From standing, while it has no target: for the variants of gaits that stand.
     pub(crate) to_stand: f32,
     /// How long it has stood still, 1 from 1.6 s on: see [`steady_share`].
@@ -85,9 +91,9 @@ impl Urgency {
                 let stays = moving_mps(graph, goal).is_some();
                 Self {
                     to_stand: moves,
-                    to_move: if stays { moves } else { 0.0 },
+                    to_rest: f32::from(u8::from(stays)),
                     at_rest: steady(stands, moves),
-                    as_asked: 0.0,
+                    ..Self::default()
                 }
             }
             (Some(target), Some(speed)) => {
@@ -105,6 +111,7 @@ impl Urgency {
         };
         Self {
             to_move: follow(self.to_move, now.to_move, CROSS_SECS),
+            to_rest: follow(self.to_rest, now.to_rest, REST_SECS),
             to_stand: follow(self.to_stand, now.to_stand, CROSS_SECS),
             at_rest: follow(self.at_rest, now.at_rest, STEADY_SECS),
             as_asked: follow(self.as_asked, now.as_asked, STEADY_SECS),

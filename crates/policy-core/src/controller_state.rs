@@ -187,8 +187,8 @@ impl ControllerState {
         ];
         let steering = [self.steering.velocity.x, self.steering.velocity.y, self.steering.trim];
         let give_way = [self.give_way.speed, self.give_way.pace, self.give_way.stop_secs];
-        let Urgency { to_move, to_stand, at_rest, as_asked } = &self.urgency;
-        let urgency = [to_move, to_stand, at_rest, as_asked];
+        let Urgency { to_move, to_rest, to_stand, at_rest, as_asked } = &self.urgency;
+        let urgency = [to_move, to_rest, to_stand, at_rest, as_asked];
         let mut others =
             times.iter().chain(&steering).chain(&give_way).chain([&self.unevenness]).chain(urgency);
         let finite = numbers.all(|n| n.is_finite()) && others.all(|n| n.is_finite());

@@ -184,6 +184,9 @@ pub struct PolicyEntry {
     /// Name of its steady variant; see [`Node::steady`](crate::training::Node::steady).
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub steady: Option<String>,
+    /// Name of its resting variant; see [`Node::resting`](crate::training::Node::resting).
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub resting: Option<String>,
     /// Where the policy comes from: recipe, samples, seed.
     #[serde(default)]
     pub origin: String,

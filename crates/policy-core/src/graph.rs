@@ -31,6 +31,8 @@ pub struct Node {
     pub agile: Option<NodeId>,
     /// Variant of the policy that acts once the character stands still, or goes straight, for a while.
     pub steady: Option<NodeId>,
+    /// Variant of a policy that moves: it acts while the character has no target and stays in the gait.
+    pub resting: Option<NodeId>,
 }
 
 impl Node {
@@ -40,10 +42,10 @@ impl Node {
         self.speed_mps == Some(0.0)
     }
 
-    /// Its variants, where it has them: for rough ground, agile, steady.
+    /// Its variants, where it has them: for rough ground, agile, steady, resting.
     #[must_use]
-    pub fn variants(&self) -> [Option<NodeId>; 3] {
-        [self.rough_ground, self.agile, self.steady]
+    pub fn variants(&self) -> [Option<NodeId>; 4] {
+        [self.rough_ground, self.agile, self.steady, self.resting]
     }
 }
 

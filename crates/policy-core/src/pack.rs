@@ -71,6 +71,7 @@ impl CharacterPack {
                 rough_ground: variant(&p.rough_ground)?,
                 agile: variant(&p.agile)?,
                 steady: variant(&p.steady)?,
+                resting: variant(&p.resting)?,
             })
         });
         let nodes = nodes.collect::<Result<Vec<_>, PackError>>()?;

@@ -3,6 +3,7 @@
 //! The side of a turn follows from the target in the report. Order: version, report, fall timers, frame history, resting blend, interrupted skill, joint targets, hand-over, settling, course,
 //! giving way, unevenness, urgency. An absent value is a zero flag and zeros, so that equal states give equal bytes.
 
+use crate::agility::Urgency;
 use crate::blend::{Blend, BlendTerm, MAX_BLEND_TERMS};
 use crate::controller_state::{ControllerState, StateError};
 use crate::evaluator::Evaluation;
@@ -23,7 +24,7 @@ const SKILL_LEN: usize = 3;
 const PROGRESS_LEN: usize = SKILL_LEN + 4 + 4 + 1 + 4;
 const REPORT_LEN: usize =
     2 * POSITION_LEN + BLEND_LEN + 1 + 8 + PROGRESS_LEN + 2 * SKILL_LEN + 2 * (SKILL_LEN + 1) + 3;
-const FIXED_LEN: usize = 4 + REPORT_LEN + 8 + 2 + BLEND_LEN + 4 + SKILL_LEN + 12 + 12 + 12 + 20;
+const FIXED_LEN: usize = 4 + REPORT_LEN + 8 + 2 + BLEND_LEN + 4 + SKILL_LEN + 12 + 12 + 12 + 24;
 
 impl ControllerState {
     /// Number of bytes; one for all states of a pack.
@@ -54,8 +55,8 @@ impl ControllerState {
         let steering = self.steering;
         w.floats(&[steering.velocity.x, steering.velocity.y, steering.trim]);
         w.floats(&[self.give_way.speed, self.give_way.pace, self.give_way.stop_secs]);
-        let urgency = self.urgency;
-        w.floats(&[self.unevenness, urgency.to_move, urgency.to_stand, urgency.at_rest, urgency.as_asked]);
+        let Urgency { to_move, to_rest, to_stand, at_rest, as_asked } = self.urgency;
+        w.floats(&[self.unevenness, to_move, to_rest, to_stand, at_rest, as_asked]);
         debug_assert_eq!(w.at, w.out.len());
     }
 
@@ -103,7 +104,7 @@ impl ControllerState {
         (give_way.speed, give_way.pace, give_way.stop_secs) = (r.float(), r.float(), r.float());
         self.unevenness = r.float();
         let urgency = &mut self.urgency;
-        (urgency.to_move, urgency.to_stand) = (r.float(), r.float());
+        (urgency.to_move, urgency.to_rest, urgency.to_stand) = (r.float(), r.float(), r.float());
         (urgency.at_rest, urgency.as_asked) = (r.float(), r.float());
         Ok(())
     }

@@ -1,5 +1,5 @@
 //! Variants: a policy gives shares of its weight to others that were trained on from it: one for rough ground, one that turns, starts
-//! or stops quickly, one that stands still or goes straight.
+//! or stops quickly, one that stands still or goes straight, one that rests in a gait that moves.
 //!
 //! All are of one family, so the straight lines between their parameters are good policies too.
 
@@ -23,8 +23,8 @@ pub(crate) fn crossed(before: f32, now: f32, [to_all, to_nothing]: [f32; 2], dt:
 pub(crate) struct Shares {
     /// Share of the variant for rough ground.
     pub(crate) rough_ground: f32,
-    /// Share of the agile variant in what the one for rough ground leaves: of gaits that move, and of those that stand. The steady
-    /// variant has a share of what both leave.
+    /// Share of the agile variant in what the one for rough ground leaves: of gaits that move, and of those that stand. The resting variant
+    /// has a share of what both leave, and the steady one of what is left then. A gait without a resting variant rests by its agile one.
     pub(crate) agile: Urgency,
 }
 
@@ -42,13 +42,21 @@ pub(crate) fn with_variants(graph: &PolicyGraph, blend: Blend, shares: Shares) -
         let rough = variant(|node| node.rough_ground, shares.rough_ground);
         let left = 1.0 - rough.map_or(0.0, |(_, share)| share);
         let stands = node.is_some_and(crate::graph::Node::stands);
-        let urgency = if stands { shares.agile.to_stand } else { shares.agile.to_move };
+        let Urgency { to_move, to_rest, to_stand, .. } = shares.agile;
+        let rests = node.is_some_and(|node| node.resting.is_some());
+        let urgency = match (stands, rests) {
+            (true, _) => to_stand,
+            (false, true) => to_move,
+            (false, false) => to_move.max(to_rest),
+        };
         let agile = variant(|node| node.agile, left * urgency);
         let left = left - agile.map_or(0.0, |(_, share)| share);
+        let resting = variant(|node| node.resting, left * to_rest);
+        let left = left - resting.map_or(0.0, |(_, share)| share);
         let steadily = if stands { shares.agile.at_rest } else { shares.agile.as_asked };
         let steady = variant(|node| node.steady, left * steady_share(steadily));
         let own = left - steady.map_or(0.0, |(_, share)| share);
-        let parts = [Some((term.policy, own)), rough, agile, steady];
+        let parts = [Some((term.policy, own)), rough, agile, resting, steady];
         for (policy, share) in parts.into_iter().flatten().filter(|(_, share)| *share > 0.0) {
             let weights = term.weights.map(|weight| share * weight);
             if shared.push(BlendTerm { policy, weights }).is_err() {

@@ -136,6 +136,34 @@ fn a_gait_that_it_is_to_stay_in_comes_to_rest_by_its_variant() {
 }
 
 #[test]
+fn a_gait_that_it_is_to_stay_in_rests_by_its_resting_variant_for_as_long_as_it_has_no_target() {
+    let (roll, idle) = (policy("roll"), policy("idle"));
+    // Only so that the walk's two variants differ, its agile one is the policy that stands.
+    let pack = changed_pack(false, |manifest| {
+        manifest.policies[1].agile = Some("idle".into());
+        manifest.policies[1].resting = Some("roll".into());
+    });
+    let config = ControllerConfig { steering: None, give_way: None, ..ControllerConfig::default() };
+    let mut controller = Controller::with_config(pack, config);
+    for _ in 0..90 {
+        tick(&mut controller, &walking(1.0));
+    }
+    let goal = Goal::Path { path: PathId::new(0), coordinate: 1.0 };
+    let mut rest = |speed: f32| {
+        controller.tick(&walking(speed), &Command { goal, ..Command::default() }, DT);
+        acted(&controller)
+    };
+    let shares: Vec<f32> = (0..3).map(|_| weight(&rest(0.6), roll)).collect();
+    assert!((shares[0] - 1.0 / 3.0).abs() < 1e-5, "a tenth of a second to cross: {shares:?}");
+    for _ in 0..90 {
+        assert_eq!(rest(0.0), [(roll, 1.0)], "also once it is still");
+    }
+    let back = (0..3).map(|_| tick(&mut controller, &walking(0.0))).last().unwrap();
+    assert_eq!(weight(&back, roll), 0.0, "it is to go on: {back:?}");
+    assert_eq!(weight(&back, idle), 1.0, "and starts by its agile variant");
+}
+
+#[test]
 fn a_stand_that_has_come_to_rest_is_left_to_its_steady_variant_until_anything_is_asked() {
     let roll = policy("roll");
     let mut stands = Controller::new(changed_pack(false, |manifest| {

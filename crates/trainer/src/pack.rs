@@ -183,6 +183,7 @@ fn policies(plan: &PackPlan, trained: &[TrainedSkill]) -> Result<(Vec<Mlp>, Vec<
             rough_ground: planned.rough_ground.clone(),
             agile: planned.agile.clone(),
             steady: planned.steady.clone(),
+            resting: planned.resting.clone(),
             origin: skill.origin.clone(),
         });
     }

@@ -109,6 +109,7 @@ fn policy_entry(name: &str, sizes: &[usize]) -> PolicyEntry {
         rough_ground: None,
         agile: None,
         steady: None,
+        resting: None,
         origin: "made up".into(),
     }
 }

@@ -97,6 +97,7 @@ pub fn manifest() -> Manifest {
         rough_ground: None,
         agile: None,
         steady: None,
+        resting: None,
         origin: "made up".into(),
     };
     let edge = |a: &str, b: &str| EdgeEntry {

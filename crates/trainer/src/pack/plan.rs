@@ -70,6 +70,9 @@ pub struct PlannedPolicy {
     /// Name of its steady variant.
     #[serde(default)]
     pub steady: Option<String>,
+    /// Name of its resting variant.
+    #[serde(default)]
+    pub resting: Option<String>,
 }
 
 impl PackPlan {
@@ -90,7 +93,8 @@ impl PackPlan {
     pub fn only(mut self, trained: impl Fn(&str) -> bool) -> Self {
         self.policies.retain(|p| trained(&p.name));
         for policy in &mut self.policies {
-            for variant in [&mut policy.rough_ground, &mut policy.agile, &mut policy.steady] {
+            let PlannedPolicy { rough_ground, agile, steady, resting, .. } = policy;
+            for variant in [rough_ground, agile, steady, resting] {
                 *variant = variant.take().filter(|name| trained(name));
             }
         }

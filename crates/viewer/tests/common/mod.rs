@@ -137,6 +137,7 @@ pub fn quadruped() -> CharacterPack {
         rough_ground: None,
         agile: None,
         steady: None,
+        resting: None,
         origin: "made up".into(),
     };
     let manifest = Manifest {

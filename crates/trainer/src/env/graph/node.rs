@@ -80,6 +80,7 @@ pub(super) fn policy_graph(
         rough_ground: None,
         agile: None,
         steady: None,
+        resting: None,
     };
     let policies = vec![policy; nodes.len()];
     PolicyGraph::from_parts(nodes.iter().map(known).collect(), &edges, paths, &policies)
