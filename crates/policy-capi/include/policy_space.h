@@ -354,8 +354,8 @@ typedef struct PsConfig {
   float give_way_stop_secs;
   // Not 0: blend gaits with their variants for rough ground where the ground is uneven.
   int32_t footing;
-  // Not 0: blend gaits with their agile variants while the character does not move yet as it is asked to, and with their
-  // steady variants once it has for a while.
+  // Not 0: blend gaits with their agile variants while the character does not move yet as it is asked to, with their
+  // steady variants once it has for a while, and with their resting variants where it is to go nowhere.
   int32_t agility;
 } PsConfig;
 

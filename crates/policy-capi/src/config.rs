@@ -80,8 +80,8 @@ pub struct PsConfig {
     pub give_way_stop_secs: f32,
     /// Not 0: blend gaits with their variants for rough ground where the ground is uneven.
     pub footing: i32,
-    /// Not 0: blend gaits with their agile variants while the character does not move yet as it is asked to, and with their
-    /// steady variants once it has for a while.
+    /// Not 0: blend gaits with their agile variants while the character does not move yet as it is asked to, with their
+    /// steady variants once it has for a while, and with their resting variants where it is to go nowhere.
     pub agility: i32,
 }
 

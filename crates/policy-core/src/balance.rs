@@ -32,14 +32,13 @@ pub(crate) fn is_balanced(skeleton: &Skeleton, state: &CharacterState) -> bool {
 /// What it weighs is not known here: the centre of mass is taken to be half-way from the root to the head.
 fn comes_to_rest(skeleton: &Skeleton, state: &CharacterState) -> Option<Vec2> {
     let (root, head) = (state.root(), state.body(skeleton.head()?));
-    let feet = skeleton.feet();
+    let feet = Some(skeleton.feet()).filter(|feet| !feet.is_empty())?;
     let ankles = feet.iter().map(|foot| state.body(*foot).position).sum::<Vec3>() / feet.len() as f32;
     let centre = 0.5 * (root.position + head.position) - ankles;
     let velocity = 0.5 * (root.linear_velocity + head.linear_velocity);
     let height = centre.z.max(LEAST_HEIGHT);
     let at = centre.truncate() + velocity.truncate() * libm::sqrtf(height / GRAVITY);
-    let at = Heading::from_rotation(root.rotation).heading_from_world_2d(at / height);
-    (!feet.is_empty()).then_some(at)
+    Some(Heading::from_rotation(root.rotation).heading_from_world_2d(at / height))
 }
 
 #[cfg(test)]

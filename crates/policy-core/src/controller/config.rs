@@ -36,8 +36,8 @@ pub struct ControllerConfig {
     pub give_way: Option<GiveWay>,
     /// Blend gaits with their variants for rough ground where the ground is uneven, the default; where the pack has none, nothing changes.
     pub footing: bool,
-    /// Blend gaits with their agile variants while the character does not move yet as it is asked to, and with their steady variants once it
-    /// has for a while, the default; where the pack has none, nothing changes.
+    /// Blend gaits with their agile variants while the character does not move yet as it is asked to, with their steady variants once it
+    /// has for a while, and with their resting variants where it is to go nowhere, the default; where the pack has none, nothing changes.
     pub agility: bool,
 }
 
