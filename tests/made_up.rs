@@ -31,6 +31,7 @@ pub fn pack(model: &Model, mjcf: &str) -> CharacterPack {
         rough_ground: None,
         agile: None,
         steady: None,
+        resting: None,
         origin: "made up".into(),
     };
     let end = EndEntry {
