@@ -17,8 +17,8 @@ pub fn project() -> PathBuf {
 
 /// A clip of a body that stands and sways, under any name: what clip it is doesn't matter here.
 pub fn write_clip(folder: &Path, name: &str) {
-    let frames = 49;
-    let time = |i: usize| i as f32 / 24.0;
+    let frames = 121;
+    let time = |i: usize| i as f32 / 60.0;
     let sway = |i: usize| (std::f32::consts::TAU * time(i)).sin();
     let rotations = |i: usize| {
         let mut all = vec![[0.0, 0.0, 0.0, 1.0]; 15];
