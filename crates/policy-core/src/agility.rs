@@ -91,7 +91,7 @@ impl Urgency {
                 let stays = moving_mps(graph, goal).is_some();
                 Self {
                     to_stand: moves,
-                    to_rest: f32::from(u8::from(stays)),
+                    to_rest: if stays { 1.0 } else { 0.0 },
                     at_rest: steady(stands, moves),
                     ..Self::default()
                 }

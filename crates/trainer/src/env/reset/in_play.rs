@@ -91,8 +91,8 @@ const KEPT_SHARE: f32 = 0.8;
 pub struct InPlayConfig {
     /// Share of episodes.
     pub share: f32,
-    /// Speed below which the skill starts, as in the plan of the pack, metres per second. A variant has none. A variant of a gait that
-    /// stands starts shortly after the stick is let go; one of a gait that moves starts out of a stand, or in the middle of any gait.
+    /// Speed below which the skill starts, as in the plan of the pack, metres per second. Leave it out for a variant of a gait. The
+    /// variant of a standing gait starts up to 0.3 s after the stick is released, the variant of a moving gait from standing or mid-gait.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub maximum_speed_mps: Option<f32>,
 }
