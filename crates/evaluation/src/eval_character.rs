@@ -42,6 +42,7 @@ impl EvalCharacter {
             turn_assist: None,
             steering: None,
             give_way: None,
+            capture_steps: false,
             start,
             ..ControllerConfig::default()
         };

@@ -357,6 +357,8 @@ typedef struct PsConfig {
   // Not 0: blend gaits with their agile variants while the character does not move yet as it is asked to, with their
   // steady variants once it has for a while, and with their resting variants where it is to go nowhere.
   int32_t agility;
+  // Not 0: step back with the pack's first policy that strafes when the body tips over backwards.
+  int32_t capture_steps;
 } PsConfig;
 
 // Motion of one body: of its frame as in the MJCF, not of its centre of mass. World space, all at one moment.

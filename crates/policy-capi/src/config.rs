@@ -83,6 +83,8 @@ pub struct PsConfig {
     /// Not 0: blend gaits with their agile variants while the character does not move yet as it is asked to, with their
     /// steady variants once it has for a while, and with their resting variants where it is to go nowhere.
     pub agility: i32,
+    /// Not 0: step back with the pack's first policy that strafes when the body tips over backwards.
+    pub capture_steps: i32,
 }
 
 impl Default for PsConfig {
@@ -120,6 +122,7 @@ impl Default for PsConfig {
             give_way_stop_secs: give_way.stop_secs,
             footing: config.footing.into(),
             agility: config.agility.into(),
+            capture_steps: config.capture_steps.into(),
         }
     }
 }
@@ -171,6 +174,7 @@ impl PsConfig {
             give_way: (self.give_way != 0).then_some(give_way),
             footing: self.footing != 0,
             agility: self.agility != 0,
+            capture_steps: self.capture_steps != 0,
         })
     }
 }

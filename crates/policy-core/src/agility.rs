@@ -37,6 +37,9 @@ const STEADY_SECS: [f32; 2] = [1.6, 0.06];
 /// Time from a gait that moves to its resting variant, and back, seconds.
 const REST_SECS: [f32; 2] = [0.1, 0.1];
 
+/// Time from which on a character goes at its pace, seconds. A place on the graph that it leaves is forgotten at once.
+const PACE_SECS: [f32; 2] = [0.3, 0.3];
+
 /// From where to where on the way to steadiness the steady variant comes in. First the gait itself brakes or gathers speed.
 const COMES_IN: [f32; 2] = [0.35, 1.0];
 
@@ -57,6 +60,9 @@ pub(crate) struct Urgency {
     pub(crate) at_rest: f32,
     /// How long it has gone as it is asked to, in the same measure.
     pub(crate) as_asked: f32,
+    /// How long it has gone no faster than its place on the graph asks for, 1 from 0.3 s on; kept while it stays there. From then on a
+    /// faster one has been pushed.
+    pub(crate) at_pace: f32,
 }
 
 /// Share of the steady variants after so long.
@@ -69,8 +75,9 @@ impl Urgency {
     ///
     /// Nothing is steady where the ground rises or drops below the feet.
     ///
-    /// A speed beyond the one asked for is no error: the way back to a slower gait brakes. Gaits without a speed ask for nothing, and on
-    /// an edge that is only crossed the body stands up, or goes down, before it goes anywhere.
+    /// A speed beyond the one asked for is no error at first: the way back to a slower gait brakes. Of a character that has gone at its pace
+    /// it is a push from behind. Gaits without a speed ask for nothing, and on an edge that is only crossed the body stands up, or goes
+    /// down, before it goes anywhere.
     pub(crate) fn next(
         self,
         (graph, position, goal): (&PolicyGraph, GraphPosition, GraphPosition),
@@ -97,10 +104,18 @@ impl Urgency {
                 }
             }
             (Some(target), Some(speed)) => {
-                let off = off_course(state, target, speed);
+                let exactly = off_course(state, target, speed, true);
+                let off = if self.at_pace < 1.0 { off_course(state, target, speed, false) } else { exactly };
                 Self {
                     to_move: off,
                     as_asked: steady(!mostly_stands(graph, position), off),
+                    at_pace: if !arrived {
+                        0.0
+                    } else if exactly > 0.0 {
+                        self.at_pace
+                    } else {
+                        1.0
+                    },
                     ..Self::default()
                 }
             }
@@ -115,6 +130,7 @@ impl Urgency {
             to_stand: follow(self.to_stand, now.to_stand, CROSS_SECS),
             at_rest: follow(self.at_rest, now.at_rest, STEADY_SECS),
             as_asked: follow(self.as_asked, now.as_asked, STEADY_SECS),
+            at_pace: if now.at_pace > 0.0 { follow(self.at_pace, now.at_pace, PACE_SECS) } else { 0.0 },
         }
     }
 }
@@ -141,8 +157,9 @@ fn moving_mps(graph: &PolicyGraph, position: GraphPosition) -> Option<f32> {
     (asked > 0.0).then_some(asked)
 }
 
-/// How far the velocity and the heading are from those that lead to a target at `speed`, in [0, 1].
-fn off_course(state: &CharacterState, target: Vec2, speed: f32) -> f32 {
+/// How far the velocity and the heading are from those that lead to a target at `speed`, in [0, 1]; a speed beyond that counts too where
+/// it has to be met `exactly`.
+fn off_course(state: &CharacterState, target: Vec2, speed: f32, exactly: bool) -> f32 {
     let root = state.root();
     let to_target = target - root.position.truncate();
     let distance = libm::sqrtf(to_target.length_squared());
@@ -153,7 +170,8 @@ fn off_course(state: &CharacterState, target: Vec2, speed: f32) -> f32 {
     let direction = to_target / distance;
     let velocity = root.linear_velocity.truncate();
     let along = velocity.dot(direction);
-    let missing = (near * speed - along).max(0.0);
+    let missing = near * speed - along;
+    let missing = if exactly { missing } else { missing.max(0.0) };
     let error = velocity - (along + missing) * direction;
     let off_heading = near * Heading::from_rotation(root.rotation).angle_off(direction);
     off_velocity(error, speed).max(within(off_heading, OFF_HEADING))

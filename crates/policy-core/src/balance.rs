@@ -30,7 +30,7 @@ pub(crate) fn is_balanced(skeleton: &Skeleton, state: &CharacterState) -> bool {
 /// Where a body comes to rest from the middle of its ankles, along its heading and to the left, as shares of its height above them.
 ///
 /// What it weighs is not known here: the centre of mass is taken to be half-way from the root to the head.
-fn comes_to_rest(skeleton: &Skeleton, state: &CharacterState) -> Option<Vec2> {
+pub(crate) fn comes_to_rest(skeleton: &Skeleton, state: &CharacterState) -> Option<Vec2> {
     let (root, head) = (state.root(), state.body(skeleton.head()?));
     let feet = Some(skeleton.feet()).filter(|feet| !feet.is_empty())?;
     let ankles = feet.iter().map(|foot| state.body(*foot).position).sum::<Vec3>() / feet.len() as f32;

@@ -238,6 +238,7 @@ impl Controller {
             }
             false => Urgency::default(),
         };
+        self.state.capture_step = self.next_capture_step(state, &command, dt);
         self.choose_blend(state, &command);
         self.observe(state, &command, dt);
         true
@@ -280,7 +281,8 @@ impl Controller {
             (None, None) => {
                 let blend = self.state.fall.acting_position(report.position).blend();
                 let shares = Shares { rough_ground: self.state.unevenness, agile: self.state.urgency };
-                with_variants(self.pack.graph(), blend, shares)
+                let varied = with_variants(self.pack.graph(), blend, shares);
+                self.state.capture_step.with_steps(self.pack.graph(), varied, blend)
             }
         };
         if let (BlendMode::Switch, Some(policy)) = (self.config.blend_mode, report.blend.strongest()) {
@@ -290,11 +292,14 @@ impl Controller {
 
     fn observe(&mut self, state: &CharacterState, command: &Command, dt: f32) {
         let strafing = strafing_share(self.pack.graph(), &self.state.report.blend);
-        let target_world = self.steered(state, self.target(state, command), strafing, dt);
+        let (target_world, facing) = match self.state.capture_step.target(state) {
+            Some((target, facing)) => (Some(target), Some(facing)),
+            None => (self.steered(state, self.target(state, command), strafing, dt), command.facing),
+        };
         let (skeleton, clock) = (self.pack.skeleton(), self.clock());
         let (observation, target) = self.input.split_at_mut(skeleton.observation_len());
         observe_into(skeleton, state, observation);
-        face_in_observation(skeleton, state, (command.facing, strafing), observation);
+        face_in_observation(skeleton, state, (facing, strafing), observation);
         self.pack.tensors().observation_normaliser.normalise_in_place(observation);
         self.state.report.target = target_world.map_or([0.0; 2], |target| target_input(state, target));
         target.copy_from_slice(&clock.unwrap_or(self.state.report.target));

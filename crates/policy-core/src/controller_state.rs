@@ -6,6 +6,7 @@
 use alloc::vec::Vec;
 
 use crate::agility::Urgency;
+use crate::capture_step::CaptureStep;
 use crate::evaluator::BlendRest;
 use crate::fall::FallDetector;
 use crate::features::FrameHistory;
@@ -44,6 +45,8 @@ pub struct ControllerState {
     pub(crate) unevenness: f32,
     /// How far the character is from what it is asked to do.
     pub(crate) urgency: Urgency,
+    /// How it steps under a body that tips over.
+    pub(crate) capture_step: CaptureStep,
 }
 
 /// Why a state can't be restored. The controller is unchanged.
@@ -96,6 +99,7 @@ impl ControllerState {
             give_way: GiveWayState::default(),
             unevenness: 0.0,
             urgency: Urgency::default(),
+            capture_step: CaptureStep::default(),
         }
     }
 
@@ -125,6 +129,7 @@ impl ControllerState {
         self.give_way = other.give_way;
         self.unevenness = other.unevenness;
         self.urgency = other.urgency;
+        self.capture_step = other.capture_step;
     }
 
     /// Makes it the state of a new controller again.
@@ -143,6 +148,7 @@ impl ControllerState {
         self.give_way = GiveWayState::default();
         self.unevenness = 0.0;
         self.urgency = Urgency::default();
+        self.capture_step = CaptureStep::default();
     }
 
     pub(crate) fn same_size(&self, other: &Self) -> bool {
@@ -187,10 +193,17 @@ impl ControllerState {
         ];
         let steering = [self.steering.velocity.x, self.steering.velocity.y, self.steering.trim];
         let give_way = [self.give_way.speed, self.give_way.pace, self.give_way.stop_secs];
-        let Urgency { to_move, to_rest, to_stand, at_rest, as_asked } = &self.urgency;
-        let urgency = [to_move, to_rest, to_stand, at_rest, as_asked];
-        let mut others =
-            times.iter().chain(&steering).chain(&give_way).chain([&self.unevenness]).chain(urgency);
+        let Urgency { to_move, to_rest, to_stand, at_rest, as_asked, at_pace } = &self.urgency;
+        let urgency = [to_move, to_rest, to_stand, at_rest, as_asked, at_pace];
+        let CaptureStep { share, secs, way, facing } = self.capture_step;
+        let capture_step = [share, secs, way.x, way.y, facing.x, facing.y];
+        let mut others = times
+            .iter()
+            .chain(&steering)
+            .chain(&give_way)
+            .chain([&self.unevenness])
+            .chain(urgency)
+            .chain(&capture_step);
         let finite = numbers.all(|n| n.is_finite()) && others.all(|n| n.is_finite());
         field("numbers", "finite numbers", finite)?;
         let progress = r.skill.map_or([0.0; 2], |s| [s.seconds, s.held_seconds]);

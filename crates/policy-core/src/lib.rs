@@ -65,6 +65,7 @@ mod balance;
 mod batch;
 pub mod bindings;
 mod blend;
+mod capture_step;
 mod command;
 pub mod contract;
 mod controller;

@@ -1,10 +1,11 @@
 //! A [`ControllerState`] as bytes, little-endian, of one length for each pack.
 //!
 //! The side of a turn follows from the target in the report. Order: version, report, fall timers, frame history, resting blend, interrupted skill, joint targets, hand-over, settling, course,
-//! giving way, unevenness, urgency. An absent value is a zero flag and zeros, so that equal states give equal bytes.
+//! giving way, unevenness, urgency, capture step. An absent value is a zero flag and zeros, so that equal states give equal bytes.
 
 use crate::agility::Urgency;
 use crate::blend::{Blend, BlendTerm, MAX_BLEND_TERMS};
+use crate::capture_step::CaptureStep;
 use crate::controller_state::{ControllerState, StateError};
 use crate::evaluator::Evaluation;
 use crate::ids::{NodeId, PolicyId, SkillId};
@@ -16,7 +17,7 @@ use crate::skill::{Refusal, SkillEnd, SkillProgress};
 use crate::steering::side_of;
 
 /// First four bytes: `PSS` and the version.
-const VERSION: u32 = u32::from_le_bytes(*b"PSS\x08");
+const VERSION: u32 = u32::from_le_bytes(*b"PSS\x09");
 
 const POSITION_LEN: usize = 2 + 2 + 4;
 const BLEND_LEN: usize = 1 + MAX_BLEND_TERMS * (2 + 4 * MAX_LAYERS);
@@ -24,7 +25,7 @@ const SKILL_LEN: usize = 3;
 const PROGRESS_LEN: usize = SKILL_LEN + 4 + 4 + 1 + 4;
 const REPORT_LEN: usize =
     2 * POSITION_LEN + BLEND_LEN + 1 + 8 + PROGRESS_LEN + 2 * SKILL_LEN + 2 * (SKILL_LEN + 1) + 3;
-const FIXED_LEN: usize = 4 + REPORT_LEN + 8 + 2 + BLEND_LEN + 4 + SKILL_LEN + 12 + 12 + 12 + 24;
+const FIXED_LEN: usize = 4 + REPORT_LEN + 8 + 2 + BLEND_LEN + 4 + SKILL_LEN + 12 + 12 + 12 + 28 + 24;
 
 impl ControllerState {
     /// Number of bytes; one for all states of a pack.
@@ -55,8 +56,10 @@ impl ControllerState {
         let steering = self.steering;
         w.floats(&[steering.velocity.x, steering.velocity.y, steering.trim]);
         w.floats(&[self.give_way.speed, self.give_way.pace, self.give_way.stop_secs]);
-        let Urgency { to_move, to_rest, to_stand, at_rest, as_asked } = self.urgency;
-        w.floats(&[self.unevenness, to_move, to_rest, to_stand, at_rest, as_asked]);
+        let Urgency { to_move, to_rest, to_stand, at_rest, as_asked, at_pace } = self.urgency;
+        w.floats(&[self.unevenness, to_move, to_rest, to_stand, at_rest, as_asked, at_pace]);
+        let CaptureStep { share, secs, way, facing } = self.capture_step;
+        w.floats(&[share, secs, way.x, way.y, facing.x, facing.y]);
         debug_assert_eq!(w.at, w.out.len());
     }
 
@@ -105,7 +108,11 @@ impl ControllerState {
         self.unevenness = r.float();
         let urgency = &mut self.urgency;
         (urgency.to_move, urgency.to_rest, urgency.to_stand) = (r.float(), r.float(), r.float());
-        (urgency.at_rest, urgency.as_asked) = (r.float(), r.float());
+        (urgency.at_rest, urgency.as_asked, urgency.at_pace) = (r.float(), r.float(), r.float());
+        let steps = &mut self.capture_step;
+        (steps.share, steps.secs) = (r.float(), r.float());
+        (steps.way.x, steps.way.y) = (r.float(), r.float());
+        (steps.facing.x, steps.facing.y) = (r.float(), r.float());
         Ok(())
     }
 }

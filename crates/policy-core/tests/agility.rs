@@ -8,7 +8,8 @@ use common::{acted, hand_over, policy, standing, weight};
 use glam::{Quat, Vec2, Vec3};
 use policy_core::format::Manifest;
 use policy_core::{
-    BodyId, CharacterPack, CharacterState, Command, Controller, ControllerConfig, Goal, PathId, Skeleton,
+    BodyId, CharacterPack, CharacterState, Command, Controller, ControllerConfig, Goal, GraphPosition,
+    NodeId, PathId, Skeleton,
 };
 
 const DT: f32 = 1.0 / 30.0;
@@ -101,12 +102,8 @@ fn a_stand_that_is_to_walk_and_a_heading_that_is_off_bring_it_in_too() {
 }
 
 #[test]
-fn to_brake_is_left_to_standing_and_its_variant_catches_a_push() {
+fn the_variant_of_a_stand_brakes_and_catches_a_push() {
     let roll = policy("roll");
-    let mut walks = controller(true);
-    for _ in 0..4 {
-        assert_eq!(tick(&mut walks, &walking(2.0)), [(1, 1.0)], "faster than asked");
-    }
     let mut stands =
         Controller::new(changed_pack(false, |manifest| manifest.policies[0].agile = Some("roll".into())));
     let mut rest = |speed: f32| {
@@ -262,6 +259,27 @@ fn on_an_edge_that_is_only_crossed_gaits_act_alone_up_and_down() {
         assert!(agile_share_half_way(false, lower) > 0.1);
         assert_eq!(agile_share_half_way(true, lower), 0.0);
     }
+}
+
+#[test]
+fn a_speed_beyond_its_pace_is_a_push_of_a_character_that_had_its_pace() {
+    let roll = policy("roll");
+    let faster = |controller: &mut Controller| weight(&tick(controller, &walking(1.8)), roll);
+    let mut pushed = controller(true);
+    assert!(faster(&mut pushed) > 0.0);
+    for _ in 0..8 {
+        faster(&mut pushed);
+    }
+    assert_eq!(faster(&mut pushed), 1.0, "for as long as it lasts");
+    // One that comes from a faster gait slows down by itself.
+    let mut slows_down = controller(true);
+    assert!(slows_down.place_at(GraphPosition { from: NodeId::new(1), to: NodeId::new(2), t: 0.9 }));
+    let mut shares = (0..40).map(|_| faster(&mut slows_down));
+    assert!(shares.all(|share| share == 0.0));
+    for _ in 0..9 {
+        assert_eq!(weight(&tick(&mut slows_down, &walking(1.0)), roll), 0.0);
+    }
+    assert!(faster(&mut slows_down) > 0.0, "0.3 s at its pace");
 }
 
 #[test]

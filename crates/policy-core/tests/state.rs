@@ -96,7 +96,7 @@ fn bad_bytes_are_refused_and_leave_a_new_state() {
         error
     };
     assert!(matches!(refused(&|b| b.truncate(9)), StateError::Length { .. }));
-    assert!(matches!(refused(&|b| b[3] = 9), StateError::Version { .. }));
+    assert!(matches!(refused(&|b| b[3] ^= 0x80), StateError::Version { .. }));
     assert!(matches!(refused(&|b| b[4] = 200), StateError::Field { field: "position", .. }));
     let numbers = |b: &mut Vec<u8>| {
         let at = b.len() - 8;

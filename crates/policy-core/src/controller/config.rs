@@ -39,6 +39,9 @@ pub struct ControllerConfig {
     /// Blend gaits with their agile variants while the character does not move yet as it is asked to, with their steady variants once it
     /// has for a while, and with their resting variants where it is to go nowhere, the default; where the pack has none, nothing changes.
     pub agility: bool,
+    /// Step back with the pack's first policy that strafes when the body tips over backwards, the default; where the pack has none, nothing
+    /// changes.
+    pub capture_steps: bool,
 }
 
 impl Default for ControllerConfig {
@@ -57,6 +60,7 @@ impl Default for ControllerConfig {
             give_way: Some(GiveWay::default()),
             footing: true,
             agility: true,
+            capture_steps: true,
         }
     }
 }

@@ -3,6 +3,7 @@
 use glam::Vec2;
 
 use super::Controller;
+use crate::capture_step::CaptureStep;
 use crate::command::Command;
 use crate::fall::{Heights, step_heights};
 use crate::give_way::GiveWayState;
@@ -83,6 +84,25 @@ impl Controller {
                 *memory = GiveWayState::default();
                 *command
             }
+        }
+    }
+
+    /// Steps under a body that tips over. Skills, falls and blends chosen by hand are none of its business.
+    pub(super) fn next_capture_step(
+        &self,
+        state: &CharacterState,
+        command: &Command,
+        dt: f32,
+    ) -> CaptureStep {
+        let report = &self.state.report;
+        let acts = report.skill.is_none() && !report.fallen && command.blend.is_none();
+        match self.config.capture_steps && acts {
+            true => {
+                let (graph, skeleton) = (self.pack.graph(), self.pack.skeleton());
+                let place = (graph, report.position);
+                self.state.capture_step.next(place, (skeleton, state), command.target, dt)
+            }
+            false => CaptureStep::default(),
         }
     }
 

@@ -59,6 +59,9 @@ pub(crate) struct Arguments {
     /// Leave agile variants out: gaits turn, start and stop by themselves.
     #[arg(long)]
     no_agility: bool,
+    /// Leave capture steps out: a character that tips over backwards goes on in its gait.
+    #[arg(long)]
+    no_capture_steps: bool,
     /// Seconds in which the player's controller passes from the joint targets before a skill to those of the skill.
     #[arg(long, default_value_t = 0.0, value_parser = seconds)]
     handover_secs: f32,
@@ -119,6 +122,7 @@ pub(crate) fn run(
         give_way,
         footing,
         agility,
+        capture_steps: !arguments.no_capture_steps,
         ..ControllerConfig::default()
     };
     let progress = Progress::bar();

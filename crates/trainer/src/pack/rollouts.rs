@@ -53,6 +53,7 @@ impl Rollout {
             turn_assist: None,
             steering: None,
             give_way: None,
+            capture_steps: false,
             start,
             ..ControllerConfig::default()
         };

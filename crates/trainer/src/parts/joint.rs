@@ -123,6 +123,7 @@ impl Workspace {
             turn_assist: None,
             steering: None,
             give_way: None,
+            capture_steps: false,
             ..ControllerConfig::default()
         };
         let controller = Controller::with_config(pack, config);

@@ -1,0 +1,120 @@
+//! Capture steps: a character that tips over backwards steps back under its body, with the policy that strafes.
+//!
+//! A gait has learned to go ahead. Pushed from the front it leans towards its target until it falls. A policy that strafes steps
+//! backwards too, so it acts until the body would come to rest above its feet again. Its target is where that place lies. The name is that of
+//! J. Pratt and others, *Capture Point: A Step toward Humanoid Push Recovery* (Humanoids, 2006).
+
+use glam::Vec2;
+
+use crate::balance::comes_to_rest;
+use crate::blend::{Blend, BlendTerm, MAX_BLEND_TERMS};
+use crate::graph::PolicyGraph;
+use crate::heading::Heading;
+use crate::ids::NodeId;
+use crate::mlp::MAX_LAYERS;
+use crate::path::GraphPosition;
+use crate::skeleton::Skeleton;
+use crate::state::CharacterState;
+use crate::variants::crossed;
+
+/// A body that would come to rest so far behind its ankles tips over, as a share of its height above them.
+const BEHIND: f32 = 0.1;
+
+/// Largest angle between heading and target, radians. In a turn a body leans into it.
+const MOST_RADIANS: f32 = 0.6;
+
+/// The steps go on for so long after the body last tipped over, seconds.
+const SETTLES_SECS: f32 = 0.3;
+
+/// Time from a gait to the policy that strafes, and back, seconds.
+const CROSS_SECS: [f32; 2] = [0.07, 0.3];
+
+/// The target lies so far from the root, metres. There the policy goes at its full speed.
+const TARGET_METRES: f32 = 1.0;
+
+/// A gait whose fall height is a smaller share of that of the policy that strafes is too low to step out of, such as a crawl.
+const LEAST_HEIGHT_SHARE: f32 = 0.7;
+
+/// What a capture step remembers from tick to tick.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(crate) struct CaptureStep {
+    /// Share of the policy that strafes, in [0, 1].
+    pub(crate) share: f32,
+    /// How long the steps go on yet, seconds.
+    pub(crate) secs: f32,
+    /// Which way they go, world, of unit length while the share is above 0.
+    pub(crate) way: Vec2,
+    /// Where the character faced when it tipped over, world, of unit length while the share is above 0.
+    pub(crate) facing: Vec2,
+}
+
+impl CaptureStep {
+    /// What it is after a tick of `dt` seconds at a position on the graph, on the way to `target`.
+    pub(crate) fn next(
+        self,
+        (graph, position): (&PolicyGraph, GraphPosition),
+        (skeleton, state): (&Skeleton, &CharacterState),
+        target: Option<Vec2>,
+        dt: f32,
+    ) -> Self {
+        if !is_within_reach(graph, position) {
+            return Self::default();
+        }
+        let root = state.root();
+        let heading = Heading::from_rotation(root.rotation);
+        let is_ahead = target
+            .and_then(|target| (target - root.position.truncate()).try_normalize())
+            .is_none_or(|direction| heading.angle_off(direction) < MOST_RADIANS);
+        let tips = comes_to_rest(skeleton, state).filter(|at| is_ahead && at.x < -BEHIND);
+        let way = tips.and_then(|at| heading.world_from_heading_2d(at).try_normalize());
+        let secs = if way.is_some() { SETTLES_SECS } else { (self.secs - dt).max(0.0) };
+        let share = crossed(self.share, if secs > 0.0 { 1.0 } else { 0.0 }, CROSS_SECS, dt);
+        match share > 0.0 {
+            true => Self {
+                share,
+                secs,
+                way: way.unwrap_or(self.way),
+                facing: if self.share > 0.0 { self.facing } else { heading.direction() },
+            },
+            false => Self::default(),
+        }
+    }
+
+    /// Where to step, world, and which way to face meanwhile; `None` while there is no need.
+    pub(crate) fn target(&self, state: &CharacterState) -> Option<(Vec2, Vec2)> {
+        let target = state.root().position.truncate() + TARGET_METRES * self.way;
+        (self.share > 0.0).then_some((target, self.facing))
+    }
+
+    /// A blend with a share given to the policy that strafes. Variants leave room for it, or the blend without them takes their place.
+    pub(crate) fn with_steps(&self, graph: &PolicyGraph, blend: Blend, without_variants: Blend) -> Blend {
+        let Some(steps) = strafing(graph).filter(|_| self.share > 0.0) else { return blend };
+        if self.share >= 1.0 {
+            return Blend::single(steps.into());
+        }
+        let blend = if blend.terms().len() < MAX_BLEND_TERMS { blend } else { without_variants };
+        let mut shared = Blend::default();
+        for term in blend.terms() {
+            let weights = term.weights.map(|weight| (1.0 - self.share) * weight);
+            let _ = shared.push(BlendTerm { policy: term.policy, weights });
+        }
+        let _ = shared.push(BlendTerm { policy: steps.into(), weights: [self.share; MAX_LAYERS] });
+        shared
+    }
+}
+
+/// The first policy that strafes.
+fn strafing(graph: &PolicyGraph) -> Option<NodeId> {
+    graph.nodes().iter().position(|node| node.strafes).map(NodeId::new)
+}
+
+/// Whether all gaits that act at a position are on their feet, and none strafes already.
+fn is_within_reach(graph: &PolicyGraph, position: GraphPosition) -> bool {
+    let least = strafing(graph).and_then(|node| graph.node(node).fall_height).map(|h| LEAST_HEIGHT_SHARE * h);
+    let on_its_feet = |node: NodeId| {
+        let node = graph.node(node);
+        !node.strafes && least.zip(node.fall_height).is_some_and(|(least, height)| height >= least)
+    };
+    let acts = [(position.from, 1.0 - position.t), (position.to, position.t)];
+    acts.into_iter().all(|(node, share)| share <= 0.0 || on_its_feet(node))
+}
