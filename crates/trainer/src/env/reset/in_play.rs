@@ -28,6 +28,7 @@ pub(crate) const PLAYED: &[&str] = &[
     "idle_steady",
     "walk_steady",
     "jog_steady",
+    "run_steady",
     "roll",
 ];
 
