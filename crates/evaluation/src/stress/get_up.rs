@@ -92,7 +92,10 @@ fn get_up(rig: &Rig<'_>, model: &Model, idle: &Gait, skill: SkillId, seed: u64) 
         held = if trial.is_upright() { held + 1 } else { 0 };
         if held > ticks(HOLD_SECS) {
             let secs = (tick + 1 - held) as f32 * TICK_SECS;
-            let stays = (0..ticks(AFTER_SECS)).all(|_| trial.tick() && !trial.is_down());
+            let low = rig.pack.graph().node(idle.start).fall_height.unwrap_or(0.0);
+            // The skill may raise it still, and tells no fall.
+            let stays = (0..ticks(AFTER_SECS))
+                .all(|_| trial.tick() && !trial.is_down() && trial.pelvis_height() >= low);
             return (Some(secs), !stays);
         }
     }
