@@ -37,15 +37,7 @@ impl EvalCharacter {
     #[must_use]
     pub fn new(model: &Model, pack: &Arc<CharacterPack>, start: &str) -> Self {
         let start = pack.graph().node_named(start).unwrap_or_default();
-        let config = ControllerConfig {
-            auto_recover: false,
-            turn_assist: None,
-            steering: None,
-            give_way: None,
-            capture_steps: false,
-            start,
-            ..ControllerConfig::default()
-        };
+        let config = ControllerConfig { auto_recover: false, start, ..ControllerConfig::unassisted() };
         let mut eval = Self {
             character: Character::new(model),
             controller: Controller::with_config(pack.clone(), config),

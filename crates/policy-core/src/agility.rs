@@ -37,8 +37,8 @@ const STEADY_SECS: [f32; 2] = [1.6, 0.06];
 /// Time from a gait that moves to its resting variant, and back, seconds.
 const REST_SECS: [f32; 2] = [0.1, 0.1];
 
-/// Time from which on a character goes at its pace, seconds. A place on the graph that it leaves is forgotten at once.
-const PACE_SECS: [f32; 2] = [0.3, 0.3];
+/// A character goes at its pace after this time, seconds.
+const PACE_SECS: f32 = 0.3;
 
 /// From where to where on the way to steadiness the steady variant comes in. First the gait itself brakes or gathers speed.
 const COMES_IN: [f32; 2] = [0.35, 1.0];
@@ -60,8 +60,8 @@ pub(crate) struct Urgency {
     pub(crate) at_rest: f32,
     /// How long it has gone as it is asked to, in the same measure.
     pub(crate) as_asked: f32,
-    /// How long it has gone no faster than its place on the graph asks for, 1 from 0.3 s on; kept while it stays there. From then on a
-    /// faster one has been pushed.
+    /// How long it has gone no faster than its place on the graph asks for, 1 from 0.3 s on; kept while it stays there, and forgotten once it
+    /// leaves. From then on a faster one has been pushed.
     pub(crate) at_pace: f32,
 }
 
@@ -104,17 +104,15 @@ impl Urgency {
                 }
             }
             (Some(target), Some(speed)) => {
-                let exactly = off_course(state, target, speed, true);
-                let off = if self.at_pace < 1.0 { off_course(state, target, speed, false) } else { exactly };
+                let [at_first, at_pace] = off_course(state, target, speed);
+                let off = if self.at_pace < 1.0 { at_first } else { at_pace };
                 Self {
                     to_move: off,
                     as_asked: steady(!mostly_stands(graph, position), off),
-                    at_pace: if !arrived {
-                        0.0
-                    } else if exactly > 0.0 {
-                        self.at_pace
-                    } else {
-                        1.0
+                    at_pace: match arrived {
+                        false => 0.0,
+                        true if at_pace > 0.0 => self.at_pace,
+                        true => (self.at_pace + dt / PACE_SECS).min(1.0),
                     },
                     ..Self::default()
                 }
@@ -130,7 +128,7 @@ impl Urgency {
             to_stand: follow(self.to_stand, now.to_stand, CROSS_SECS),
             at_rest: follow(self.at_rest, now.at_rest, STEADY_SECS),
             as_asked: follow(self.as_asked, now.as_asked, STEADY_SECS),
-            at_pace: if now.at_pace > 0.0 { follow(self.at_pace, now.at_pace, PACE_SECS) } else { 0.0 },
+            at_pace: now.at_pace,
         }
     }
 }
@@ -157,24 +155,25 @@ fn moving_mps(graph: &PolicyGraph, position: GraphPosition) -> Option<f32> {
     (asked > 0.0).then_some(asked)
 }
 
-/// How far the velocity and the heading are from those that lead to a target at `speed`, in [0, 1]; a speed beyond that counts too where
-/// it has to be met `exactly`.
-fn off_course(state: &CharacterState, target: Vec2, speed: f32, exactly: bool) -> f32 {
+/// How far the velocity and the heading are from those that lead to a target at `speed`, each in [0, 1]: where a higher speed is no error,
+/// and where it is one.
+fn off_course(state: &CharacterState, target: Vec2, speed: f32) -> [f32; 2] {
     let root = state.root();
     let to_target = target - root.position.truncate();
     let distance = libm::sqrtf(to_target.length_squared());
     if !(distance.is_finite() && distance > 1e-3) {
-        return 0.0;
+        return [0.0; 2];
     }
     let near = (distance / BRAKING_METRES).min(1.0);
     let direction = to_target / distance;
     let velocity = root.linear_velocity.truncate();
     let along = velocity.dot(direction);
     let missing = near * speed - along;
-    let missing = if exactly { missing } else { missing.max(0.0) };
-    let error = velocity - (along + missing) * direction;
-    let off_heading = near * Heading::from_rotation(root.rotation).angle_off(direction);
-    off_velocity(error, speed).max(within(off_heading, OFF_HEADING))
+    let off_heading = within(near * Heading::from_rotation(root.rotation).angle_off(direction), OFF_HEADING);
+    [missing.max(0.0), missing].map(|missing| {
+        let error = velocity - (along + missing) * direction;
+        off_velocity(error, speed).max(off_heading)
+    })
 }
 
 /// How far a velocity error counts at a speed, in [0, 1].

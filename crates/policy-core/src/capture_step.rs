@@ -1,20 +1,20 @@
 //! Capture steps: a character that tips over backwards steps back under its body, with the policy that strafes.
 //!
-//! A gait has learned to go ahead. Pushed from the front it leans towards its target until it falls. A policy that strafes steps
-//! backwards too, so it acts until the body would come to rest above its feet again. Its target is where that place lies. The name is that of
-//! J. Pratt and others, *Capture Point: A Step toward Humanoid Push Recovery* (Humanoids, 2006).
+//! A gait has learned to go ahead alone, and a push from the front tips it over. A policy that strafes steps backwards too, so it acts
+//! until the body would come to rest above its feet again. Its target is where that place lies. The name is that of J. Pratt and others, *Capture Point: A Step toward Humanoid Push Recovery* (Humanoids, 2006).
 
 use glam::Vec2;
 
 use crate::balance::comes_to_rest;
 use crate::blend::{Blend, BlendTerm, MAX_BLEND_TERMS};
+use crate::fall::fall_height;
 use crate::graph::PolicyGraph;
 use crate::heading::Heading;
-use crate::ids::NodeId;
 use crate::mlp::MAX_LAYERS;
 use crate::path::GraphPosition;
 use crate::skeleton::Skeleton;
 use crate::state::CharacterState;
+use crate::strafe::strafing_share;
 use crate::variants::crossed;
 
 /// A body that would come to rest so far behind its ankles tips over, as a share of its height above them.
@@ -88,7 +88,7 @@ impl CaptureStep {
 
     /// A blend with a share given to the policy that strafes. Variants leave room for it, or the blend without them takes their place.
     pub(crate) fn with_steps(&self, graph: &PolicyGraph, blend: Blend, without_variants: Blend) -> Blend {
-        let Some(steps) = strafing(graph).filter(|_| self.share > 0.0) else { return blend };
+        let Some(steps) = graph.strafing().filter(|_| self.share > 0.0) else { return blend };
         if self.share >= 1.0 {
             return Blend::single(steps.into());
         }
@@ -103,18 +103,10 @@ impl CaptureStep {
     }
 }
 
-/// The first policy that strafes.
-fn strafing(graph: &PolicyGraph) -> Option<NodeId> {
-    graph.nodes().iter().position(|node| node.strafes).map(NodeId::new)
-}
-
 /// Whether all gaits that act at a position are on their feet, and none strafes already.
 fn is_within_reach(graph: &PolicyGraph, position: GraphPosition) -> bool {
-    let least = strafing(graph).and_then(|node| graph.node(node).fall_height).map(|h| LEAST_HEIGHT_SHARE * h);
-    let on_its_feet = |node: NodeId| {
-        let node = graph.node(node);
-        !node.strafes && least.zip(node.fall_height).is_some_and(|(least, height)| height >= least)
-    };
-    let acts = [(position.from, 1.0 - position.t), (position.to, position.t)];
-    acts.into_iter().all(|(node, share)| share <= 0.0 || on_its_feet(node))
+    let height = graph.strafing().and_then(|node| graph.node(node).fall_height);
+    let is_high = |(least, height)| height >= LEAST_HEIGHT_SHARE * least;
+    height.zip(fall_height(graph, position)).is_some_and(is_high)
+        && strafing_share(graph, &position.blend()) == 0.0
 }

@@ -4,9 +4,9 @@
 //! from a stand it may push on.
 
 use crate::command::{Command, Goal};
+use crate::fall::fall_height;
 use crate::graph::PolicyGraph;
 use crate::heading::Heading;
-use crate::ids::NodeId;
 use crate::path::GraphPosition;
 use crate::state::CharacterState;
 
@@ -92,9 +92,7 @@ impl GiveWay {
 fn is_low(graph: &PolicyGraph, position: GraphPosition, command: &Command) -> bool {
     let Goal::Path { path, .. } = command.goal else { return false };
     let Some(first) = graph.paths().get(path.index()).map(|p| p.nodes()[0]) else { return false };
-    let fall_height = |node: NodeId| graph.node(node).fall_height.unwrap_or(0.0);
-    let acts = [(position.from, 1.0 - position.t), (position.to, position.t)];
-    acts.into_iter().any(|(node, share)| share > 0.0 && fall_height(node) < fall_height(first))
+    fall_height(graph, position).unwrap_or(0.0) < graph.node(first).fall_height.unwrap_or(0.0)
 }
 
 /// Speed that a command asks for on a path that begins with standing, metres per second.

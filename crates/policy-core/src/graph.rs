@@ -87,6 +87,7 @@ pub struct PolicyGraph {
     edges: Vec<Edge>,
     paths: Vec<Path>,
     routes: RouteTable,
+    strafing: Option<NodeId>,
 }
 
 /// Why a graph can't be made.
@@ -185,7 +186,8 @@ impl PolicyGraph {
         }
         let routes = RouteTable::new(nodes.len(), &checked);
         let paths = paths.into_iter().map(|(name, nodes)| Path { name, nodes }).collect();
-        let graph = Self { nodes, edges: checked, paths, routes };
+        let strafing = nodes.iter().position(|node| node.strafes).map(NodeId::new);
+        let graph = Self { nodes, edges: checked, paths, routes, strafing };
         for path in &graph.paths {
             graph.check_path(path)?;
         }
@@ -271,6 +273,11 @@ impl PolicyGraph {
     #[must_use]
     pub fn path_named(&self, name: &str) -> Option<PathId> {
         self.paths.iter().position(|p| p.name == name).map(PathId::new)
+    }
+
+    /// The first node that strafes.
+    pub(crate) fn strafing(&self) -> Option<NodeId> {
+        self.strafing
     }
 
     /// True when `position` lies on a node or an edge of this graph.

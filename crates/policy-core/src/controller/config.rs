@@ -44,6 +44,15 @@ pub struct ControllerConfig {
     pub capture_steps: bool,
 }
 
+impl ControllerConfig {
+    /// The default without what adjusts a command for the player's sake: turn assist, steering, giving way, capture steps. What the policies do
+    /// by themselves is trained and measured so.
+    #[must_use]
+    pub fn unassisted() -> Self {
+        Self { turn_assist: None, steering: None, give_way: None, capture_steps: false, ..Self::default() }
+    }
+}
+
 impl Default for ControllerConfig {
     fn default() -> Self {
         Self {

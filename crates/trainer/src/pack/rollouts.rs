@@ -50,12 +50,8 @@ impl Rollout {
         let config = ControllerConfig {
             auto_recover: false,
             assist_rise: false,
-            turn_assist: None,
-            steering: None,
-            give_way: None,
-            capture_steps: false,
             start,
-            ..ControllerConfig::default()
+            ..ControllerConfig::unassisted()
         };
         let skeleton = pack.skeleton();
         Self {

@@ -117,15 +117,8 @@ impl Workspace {
         let mut plan = plan.only(needed);
         plan.skills.retain(|s| s.name == *name);
         let pack = self.pack_of(plan, &format!("starts at the end of {name}"), |_| true)?;
-        let config = ControllerConfig {
-            auto_recover: false,
-            assist_rise: false,
-            turn_assist: None,
-            steering: None,
-            give_way: None,
-            capture_steps: false,
-            ..ControllerConfig::default()
-        };
+        let config =
+            ControllerConfig { auto_recover: false, assist_rise: false, ..ControllerConfig::unassisted() };
         let controller = Controller::with_config(pack, config);
         Ok(HandOver { controller, skill: SkillId::new(0), node, out_of })
     }
