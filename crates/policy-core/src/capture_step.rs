@@ -5,17 +5,17 @@
 
 use glam::Vec2;
 
+use crate::agility::Urgency;
 use crate::balance::comes_to_rest;
 use crate::blend::{Blend, BlendTerm, MAX_BLEND_TERMS};
 use crate::fall::fall_height;
 use crate::graph::PolicyGraph;
 use crate::heading::Heading;
-use crate::mlp::MAX_LAYERS;
 use crate::path::GraphPosition;
 use crate::skeleton::Skeleton;
 use crate::state::CharacterState;
 use crate::strafe::strafing_share;
-use crate::variants::crossed;
+use crate::variants::{Shares, crossed, with_variants};
 
 /// A body that would come to rest so far behind its ankles tips over, as a share of its height above them.
 const BEHIND: f32 = 0.1;
@@ -86,19 +86,29 @@ impl CaptureStep {
         (self.share > 0.0).then_some((target, self.facing))
     }
 
-    /// A blend with a share given to the policy that strafes. Variants leave room for it, or the blend without them takes their place.
-    pub(crate) fn with_steps(&self, graph: &PolicyGraph, blend: Blend, without_variants: Blend) -> Blend {
-        let Some(steps) = graph.strafing().filter(|_| self.share > 0.0) else { return blend };
+    /// A blend with a share given to the policy that strafes, and as much of that as `rough_ground` says to its variant for rough ground.
+    /// Variants of other policies leave room for them, or the blend without them takes their place.
+    pub(crate) fn with_steps(
+        &self,
+        graph: &PolicyGraph,
+        [blend, without_variants]: [Blend; 2],
+        rough_ground: f32,
+    ) -> Blend {
+        let Some(strafing) = graph.strafing().filter(|_| self.share > 0.0) else { return blend };
+        let shares = Shares { rough_ground, agile: Urgency::default() };
+        let steps = with_variants(graph, Blend::single(strafing.into()), shares);
         if self.share >= 1.0 {
-            return Blend::single(steps.into());
+            return steps;
         }
-        let blend = if blend.terms().len() < MAX_BLEND_TERMS { blend } else { without_variants };
+        let is_room = blend.terms().len() + steps.terms().len() <= MAX_BLEND_TERMS;
+        let blend = if is_room { blend } else { without_variants };
         let mut shared = Blend::default();
-        for term in blend.terms() {
-            let weights = term.weights.map(|weight| (1.0 - self.share) * weight);
-            let _ = shared.push(BlendTerm { policy: term.policy, weights });
+        for (part, share) in [(blend, 1.0 - self.share), (steps, self.share)] {
+            for term in part.terms() {
+                let weights = term.weights.map(|weight| share * weight);
+                let _ = shared.push(BlendTerm { policy: term.policy, weights });
+            }
         }
-        let _ = shared.push(BlendTerm { policy: steps.into(), weights: [self.share; MAX_LAYERS] });
         shared
     }
 }

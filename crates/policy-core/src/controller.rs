@@ -282,7 +282,8 @@ impl Controller {
                 let blend = self.state.fall.acting_position(report.position).blend();
                 let shares = Shares { rough_ground: self.state.unevenness, agile: self.state.urgency };
                 let varied = with_variants(self.pack.graph(), blend, shares);
-                self.state.capture_step.with_steps(self.pack.graph(), varied, blend)
+                let rough_ground = shares.rough_ground;
+                self.state.capture_step.with_steps(self.pack.graph(), [varied, blend], rough_ground)
             }
         };
         if let (BlendMode::Switch, Some(policy)) = (self.config.blend_mode, report.blend.strongest()) {

@@ -269,7 +269,7 @@ pub struct SkillEntry {
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct EndEntry {
-    /// Score at which the time starts to count, in [0, 1].
+    /// Score at which the time starts to count, in [0, 1]. With 0 any score will do, so that height alone ends the skill.
     pub threshold: f32,
     /// How far below the threshold the score may fall meanwhile.
     pub hysteresis: f32,

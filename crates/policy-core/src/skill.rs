@@ -10,7 +10,7 @@ use crate::observation::{TARGET_LEN, TARGET_RANGE_METRES};
 /// When an episodic skill ends.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct EndCondition {
-    /// The discriminator's score, in [0, 1], must rise to this to start counting.
+    /// The discriminator's score, in [0, 1], must rise to this to start counting. With 0 any score will do, so that height alone ends it.
     pub threshold: f32,
     /// The time runs on until the score falls this far below the threshold, in [0, 1].
     pub hysteresis: f32,

@@ -163,6 +163,25 @@ fn shares_add_up_to_one_beside_all_variants_and_between_two_gaits() {
 }
 
 #[test]
+fn on_rough_ground_its_variant_for_rough_ground_steps() {
+    let pack = pack_with(|manifest| {
+        let strafes = &mut manifest.policies[policy("jog")];
+        (strafes.strafes, strafes.rough_ground) = (true, Some(STRAFES.into()));
+    });
+    let mut controller =
+        Controller::with_config(pack, ControllerConfig { start: n(policy("walk")), ..Default::default() });
+    let mut rough = moving(0.0, -0.8);
+    let foot = Skeleton::humanoid().feet()[0].index();
+    rough.ground_rises[foot] = 0.02;
+    let half = (0..15).map(|_| tick(&mut controller, &rough, Some(0.0))).last();
+    assert!(half.is_some_and(|share| (share - 0.5).abs() < 1e-5), "half-way from level to rough: {half:?}");
+    rough.ground_rises[foot] = 0.1;
+    let fully = (0..3).map(|_| tick(&mut controller, &rough, Some(0.0))).last();
+    assert_eq!(fully, Some(1.0));
+    assert!(controller.report().target[0] < -0.04, "the target lies behind");
+}
+
+#[test]
 fn a_saved_state_goes_on_with_its_steps() {
     let mut controller = controller_at("walk", true);
     tick(&mut controller, &moving(0.0, -0.8), Some(0.0));
