@@ -93,9 +93,13 @@ fn props_and_fixtures_are_pushed_moved_refused_and_removed() {
     app.world_mut().entity_mut(character).insert(walk_to(Vec3::new(0.0, 0.0, -100.0)));
     run(&mut app, 1.0);
     assert!(app.world().get::<MujocoPropBody>(refused).is_none());
-    run(&mut app, 5.0);
-    let moved = (place(&app, crate_) - crate_at).xz().length();
-    assert!(moved > 0.3, "the crate moved {moved} m");
+    // It may fall back once the character has stumbled over it.
+    let moved = (0..10).map(|_| {
+        run(&mut app, 0.5);
+        (place(&app, crate_) - crate_at).xz().length()
+    });
+    let farthest = moved.fold(0.0, f32::max);
+    assert!(farthest > 0.3, "the crate moved {farthest} m");
     let thrown = place(&app, ball);
     assert!(thrown.z > 12.5 && thrown.z < 19.9, "the ball is before the wall, {thrown}");
 
