@@ -1,21 +1,22 @@
 //! Capture steps: a character that tips over backwards steps back under its body, with the policy that strafes.
 //!
 //! A gait has learned to go ahead alone, and a push from the front tips it over. A policy that strafes steps backwards too, so it acts
-//! until the body would come to rest above its feet again. Its target is where that place lies. The name is that of J. Pratt and others, *Capture Point: A Step toward Humanoid Push Recovery* (Humanoids, 2006).
+//! until the body would come to rest above its feet again. Its target is where that place lies. The name is that of J. Pratt and
+//! others, *Capture Point: A Step toward Humanoid Push Recovery* (Humanoids, 2006).
 
 use glam::Vec2;
 
-use crate::agility::Urgency;
 use crate::balance::comes_to_rest;
-use crate::blend::{Blend, BlendTerm, MAX_BLEND_TERMS};
+use crate::blend::{Blend, BlendTerm};
 use crate::fall::fall_height;
 use crate::graph::PolicyGraph;
 use crate::heading::Heading;
+use crate::mlp::MAX_LAYERS;
 use crate::path::GraphPosition;
 use crate::skeleton::Skeleton;
 use crate::state::CharacterState;
 use crate::strafe::strafing_share;
-use crate::variants::{Shares, crossed, with_variants};
+use crate::variants::crossed;
 
 /// A body that would come to rest so far behind its ankles tips over, as a share of its height above them.
 const BEHIND: f32 = 0.1;
@@ -86,29 +87,18 @@ impl CaptureStep {
         (self.share > 0.0).then_some((target, self.facing))
     }
 
-    /// A blend with a share given to the policy that strafes, and as much of that as `rough_ground` says to its variant for rough ground.
-    /// Variants of other policies leave room for them, or the blend without them takes their place.
-    pub(crate) fn with_steps(
-        &self,
-        graph: &PolicyGraph,
-        [blend, without_variants]: [Blend; 2],
-        rough_ground: f32,
-    ) -> Blend {
-        let Some(strafing) = graph.strafing().filter(|_| self.share > 0.0) else { return blend };
-        let shares = Shares { rough_ground, agile: Urgency::default() };
-        let steps = with_variants(graph, Blend::single(strafing.into()), shares);
+    /// A blend of gaits with a share given to the policy that strafes.
+    pub(crate) fn with_steps(&self, graph: &PolicyGraph, gaits: Blend) -> Blend {
+        let Some(steps) = graph.strafing().filter(|_| self.share > 0.0) else { return gaits };
         if self.share >= 1.0 {
-            return steps;
+            return Blend::single(steps.into());
         }
-        let is_room = blend.terms().len() + steps.terms().len() <= MAX_BLEND_TERMS;
-        let blend = if is_room { blend } else { without_variants };
         let mut shared = Blend::default();
-        for (part, share) in [(blend, 1.0 - self.share), (steps, self.share)] {
-            for term in part.terms() {
-                let weights = term.weights.map(|weight| share * weight);
-                let _ = shared.push(BlendTerm { policy: term.policy, weights });
-            }
+        for term in gaits.terms() {
+            let weights = term.weights.map(|weight| (1.0 - self.share) * weight);
+            let _ = shared.push(BlendTerm { policy: term.policy, weights });
         }
+        let _ = shared.push(BlendTerm { policy: steps.into(), weights: [self.share; MAX_LAYERS] });
         shared
     }
 }

@@ -280,10 +280,9 @@ impl Controller {
             (None, Some(blend)) => blend,
             (None, None) => {
                 let blend = self.state.fall.acting_position(report.position).blend();
+                let blend = self.state.capture_step.with_steps(self.pack.graph(), blend);
                 let shares = Shares { rough_ground: self.state.unevenness, agile: self.state.urgency };
-                let varied = with_variants(self.pack.graph(), blend, shares);
-                let rough_ground = shares.rough_ground;
-                self.state.capture_step.with_steps(self.pack.graph(), [varied, blend], rough_ground)
+                with_variants(self.pack.graph(), blend, shares)
             }
         };
         if let (BlendMode::Switch, Some(policy)) = (self.config.blend_mode, report.blend.strongest()) {
