@@ -32,6 +32,8 @@ pub fn pack(model: &Model, mjcf: &str) -> CharacterPack {
         agile: None,
         steady: None,
         resting: None,
+        starting: None,
+        pushed_aside: None,
         origin: "made up".into(),
     };
     let end = EndEntry {

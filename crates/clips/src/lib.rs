@@ -236,12 +236,19 @@ impl Clip {
 
     /// The body whose motion a body has in the mirror; itself for one in the middle.
     fn twin(&self, index: usize, name: &str) -> usize {
-        let other = match (name.contains("left"), name.contains("right")) {
-            (true, false) => name.replace("left", "right"),
-            (false, true) => name.replace("right", "left"),
-            _ => return index,
-        };
-        self.bodies.iter().position(|body| *body == other).unwrap_or(index)
+        let other = twin_name(name);
+        other.and_then(|other| self.bodies.iter().position(|body| *body == other)).unwrap_or(index)
+    }
+}
+
+/// The name of the body on the other side: with `left` where this one has `right`, and the other way round. `None` for a body in the
+/// middle.
+#[must_use]
+pub fn twin_name(name: &str) -> Option<String> {
+    match (name.contains("left"), name.contains("right")) {
+        (true, false) => Some(name.replace("left", "right")),
+        (false, true) => Some(name.replace("right", "left")),
+        _ => None,
     }
 }
 

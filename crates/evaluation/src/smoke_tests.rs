@@ -60,6 +60,8 @@ fn pack(falls: bool) -> Arc<CharacterPack> {
         agile: None,
         steady: None,
         resting: None,
+        starting: None,
+        pushed_aside: None,
         origin: "made up".into(),
     };
     let edge = |a: &str, b: &str| EdgeEntry {

@@ -52,7 +52,7 @@ pub const PS_NONE: i32 = -1;
 pub const PS_MAX_LAYERS: usize = 4;
 
 /// Most policies of a blend.
-pub const PS_MAX_BLEND_TERMS: usize = 8;
+pub const PS_MAX_BLEND_TERMS: usize = 16;
 
 const _: () = assert!(PS_MAX_LAYERS == policy_core::training::MAX_LAYERS);
 const _: () = assert!(PS_MAX_BLEND_TERMS == policy_core::training::MAX_BLEND_TERMS);

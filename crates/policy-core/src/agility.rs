@@ -1,6 +1,6 @@
 //! Agility: while a character does not move yet as it is asked to, a gait is blended with its agile variant; once it has
 //! done as it is asked to for a while, with its steady variant; where it has no target and stays in a gait that moves, with its resting
-//! variant.
+//! variant; while it sets off from a stand, with its starting variant.
 //!
 //! A gait that turns, starts or stops quickly looks hurried while it walks straight ahead. So the variant acts in the moments in which
 //! it is needed, and not at all once the character goes as it is asked to; without other variants the gait then acts with the bits that it
@@ -37,6 +37,15 @@ const STEADY_SECS: [f32; 2] = [1.6, 0.06];
 /// Time from a gait that moves to its resting variant, and back, seconds.
 const REST_SECS: [f32; 2] = [0.1, 0.1];
 
+/// Time from a gait to its starting variant, and back, seconds. The first is no longer than a tick: a start is over soon.
+const START_CROSS_SECS: [f32; 2] = [0.03, 0.2];
+
+/// A start takes at most so long, seconds.
+const START_SECS: f32 = 1.0;
+
+/// A character stands that moves no faster, metres per second.
+const STANDS_MPS: f32 = 0.4;
+
 /// A character goes at its pace after this time, seconds.
 const PACE_SECS: f32 = 0.3;
 
@@ -63,6 +72,10 @@ pub(crate) struct Urgency {
     /// How long it has gone no faster than its place on the graph asks for, 1 from 0.3 s on; kept while it stays there, and forgotten once it
     /// leaves. From then on a faster one has been pushed.
     pub(crate) at_pace: f32,
+    /// 1 while it sets off from a stand: for the starting variants.
+    pub(crate) to_start: f32,
+    /// How long a start may take yet, seconds: all of its time while it stands without a target, none once it is fast enough.
+    pub(crate) start_secs: f32,
 }
 
 /// Share of the steady variants after so long.
@@ -119,6 +132,8 @@ impl Urgency {
             }
             (Some(_), None) => Self::default(),
         };
+        let start_secs = self.start_secs_left((graph, position, goal), state, target, dt);
+        let starts = target.is_some() && start_secs > 0.0 && !crosses;
         let follow = |before: f32, now: f32, secs: [f32; 2]| {
             crossed(before, if now.is_finite() { now } else { 0.0 }, secs, dt)
         };
@@ -129,7 +144,32 @@ impl Urgency {
             at_rest: follow(self.at_rest, now.at_rest, STEADY_SECS),
             as_asked: follow(self.as_asked, now.as_asked, STEADY_SECS),
             at_pace: now.at_pace,
+            to_start: follow(self.to_start, if starts { 1.0 } else { 0.0 }, START_CROSS_SECS),
+            start_secs,
         }
+    }
+
+    /// How long a start may take yet, seconds: none on the way to a gait that is slower than the starting variant.
+    fn start_secs_left(
+        self,
+        (graph, position, goal): (&PolicyGraph, GraphPosition, GraphPosition),
+        state: &CharacterState,
+        target: Option<Vec2>,
+        dt: f32,
+    ) -> f32 {
+        let root = state.root();
+        let velocity = root.linear_velocity.truncate();
+        let left = (self.start_secs - dt).max(0.0);
+        let Some(target) = target else {
+            let stands = position.as_node().is_some_and(|node| graph.node(node).stands());
+            let still = velocity.length_squared() < STANDS_MPS * STANDS_MPS;
+            return if stands && still { START_SECS } else { left };
+        };
+        let variant = graph.node(position.nearest_node()).starting;
+        let speed = variant.and_then(|variant| graph.node(variant).speed_mps);
+        let along = velocity.dot((target - root.position.truncate()).normalize_or_zero());
+        let goes_on = |speed: f32| along < speed && moving_mps(graph, goal).is_some_and(|asked| asked >= speed);
+        if speed.is_some_and(goes_on) { left } else { 0.0 }
     }
 }
 

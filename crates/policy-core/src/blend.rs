@@ -9,7 +9,7 @@ use crate::kernel::{Arithmetic, add_scaled_rows, relu, scale_rows};
 use crate::mlp::{MAX_LAYERS, Mlp, MlpScratch};
 
 /// Most policies in one [`Blend`].
-pub const MAX_BLEND_TERMS: usize = 8;
+pub const MAX_BLEND_TERMS: usize = 16;
 
 /// One policy's part in a blend.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -80,6 +80,22 @@ impl Blend {
         *slot = term;
         self.len += 1;
         Ok(())
+    }
+
+    /// Adds weights to those of a policy, which joins the blend where it has none.
+    ///
+    /// # Errors
+    /// When the policy is not in the blend and the blend is full.
+    pub(crate) fn add(&mut self, term: BlendTerm) -> Result<(), BlendFull> {
+        match self.terms[..self.len].iter_mut().find(|other| other.policy == term.policy) {
+            Some(other) => {
+                for (weight, more) in other.weights.iter_mut().zip(term.weights) {
+                    *weight += more;
+                }
+                Ok(())
+            }
+            None => self.push(term),
+        }
     }
 
     /// The policies and their blend weights.

@@ -239,6 +239,7 @@ impl Controller {
             false => Urgency::default(),
         };
         self.state.capture_step = self.next_capture_step(state, &command, dt);
+        self.state.pushed_aside = self.next_pushed_aside(state, &command, dt);
         self.choose_blend(state, &command);
         self.observe(state, &command, dt);
         true
@@ -281,7 +282,11 @@ impl Controller {
             (None, None) => {
                 let blend = self.state.fall.acting_position(report.position).blend();
                 let blend = self.state.capture_step.with_steps(self.pack.graph(), blend);
-                let shares = Shares { rough_ground: self.state.unevenness, agile: self.state.urgency };
+                let shares = Shares {
+                    aside: self.state.pushed_aside,
+                    rough_ground: self.state.unevenness,
+                    agile: self.state.urgency,
+                };
                 with_variants(self.pack.graph(), blend, shares)
             }
         };
@@ -294,6 +299,7 @@ impl Controller {
         let strafing = strafing_share(self.pack.graph(), &self.state.report.blend);
         let (target_world, facing) = match self.state.capture_step.target(state) {
             Some((target, facing)) => (Some(target), Some(facing)),
+            None if self.state.pushed_aside.stands() => (None, command.facing),
             None => (self.steered(state, self.target(state, command), strafing, dt), command.facing),
         };
         let (skeleton, clock) = (self.pack.skeleton(), self.clock());

@@ -14,6 +14,7 @@ use crate::give_way::GiveWayState;
 use crate::ids::SkillId;
 use crate::pack::CharacterPack;
 use crate::path::GraphPosition;
+use crate::pushed_aside::PushedAside;
 use crate::report::TickReport;
 use crate::state::JointTargets;
 use crate::steering::SteeringState;
@@ -47,6 +48,8 @@ pub struct ControllerState {
     pub(crate) urgency: Urgency,
     /// How it steps under a body that tips over.
     pub(crate) capture_step: CaptureStep,
+    /// How it catches a push aside.
+    pub(crate) pushed_aside: PushedAside,
 }
 
 /// Why a state can't be restored. The controller is unchanged.
@@ -100,6 +103,7 @@ impl ControllerState {
             unevenness: 0.0,
             urgency: Urgency::default(),
             capture_step: CaptureStep::default(),
+            pushed_aside: PushedAside::default(),
         }
     }
 
@@ -130,6 +134,7 @@ impl ControllerState {
         self.unevenness = other.unevenness;
         self.urgency = other.urgency;
         self.capture_step = other.capture_step;
+        self.pushed_aside = other.pushed_aside;
     }
 
     /// Makes it the state of a new controller again.
@@ -149,6 +154,7 @@ impl ControllerState {
         self.unevenness = 0.0;
         self.urgency = Urgency::default();
         self.capture_step = CaptureStep::default();
+        self.pushed_aside = PushedAside::default();
     }
 
     pub(crate) fn same_size(&self, other: &Self) -> bool {
@@ -193,8 +199,9 @@ impl ControllerState {
         ];
         let steering = [self.steering.velocity.x, self.steering.velocity.y, self.steering.trim];
         let give_way = [self.give_way.speed, self.give_way.pace, self.give_way.stop_secs];
-        let Urgency { to_move, to_rest, to_stand, at_rest, as_asked, at_pace } = &self.urgency;
-        let urgency = [to_move, to_rest, to_stand, at_rest, as_asked, at_pace];
+        let Urgency { to_move, to_rest, to_stand, at_rest, as_asked, at_pace, to_start, start_secs } =
+            &self.urgency;
+        let urgency = [to_move, to_rest, to_stand, at_rest, as_asked, at_pace, to_start, start_secs];
         let CaptureStep { share, secs, way, facing } = self.capture_step;
         let capture_step = [share, secs, way.x, way.y, facing.x, facing.y];
         let mut others = times
@@ -203,7 +210,8 @@ impl ControllerState {
             .chain(&give_way)
             .chain([&self.unevenness])
             .chain(urgency)
-            .chain(&capture_step);
+            .chain(&capture_step)
+            .chain([&self.pushed_aside.share, &self.pushed_aside.secs]);
         let finite = numbers.all(|n| n.is_finite()) && others.all(|n| n.is_finite());
         field("numbers", "finite numbers", finite)?;
         let progress = r.skill.map_or([0.0; 2], |s| [s.seconds, s.held_seconds]);

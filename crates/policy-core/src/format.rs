@@ -187,6 +187,13 @@ pub struct PolicyEntry {
     /// Name of its resting variant; see [`Node::resting`](crate::training::Node::resting).
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub resting: Option<String>,
+    /// Name of its starting variant; see [`Node::starting`](crate::training::Node::starting).
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub starting: Option<String>,
+    /// Names of the policies that catch a push to its left, and to its right; see
+    /// [`Node::pushed_aside`](crate::training::Node::pushed_aside).
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub pushed_aside: Option<[String; 2]>,
     /// Where the policy comes from: recipe, samples, seed.
     #[serde(default)]
     pub origin: String,

@@ -33,6 +33,10 @@ pub struct Node {
     pub steady: Option<NodeId>,
     /// Variant of a policy that moves: it acts while the character has no target and stays in the gait.
     pub resting: Option<NodeId>,
+    /// Variant of the policy that acts while the character sets off from a stand, until it is as fast as that variant's speed.
+    pub starting: Option<NodeId>,
+    /// Standing policies that act while a push tips the character over to its left, and to its right.
+    pub pushed_aside: Option<[NodeId; 2]>,
 }
 
 impl Node {
@@ -42,10 +46,11 @@ impl Node {
         self.speed_mps == Some(0.0)
     }
 
-    /// Its variants, where it has them: for rough ground, agile, steady, resting.
+    /// Its variants, where it has them: for rough ground, agile, steady, resting, starting, pushed to its left, pushed to its right.
     #[must_use]
-    pub fn variants(&self) -> [Option<NodeId>; 4] {
-        [self.rough_ground, self.agile, self.steady, self.resting]
+    pub fn variants(&self) -> [Option<NodeId>; 7] {
+        let [left, right] = self.pushed_aside.map_or([None; 2], |both| both.map(Some));
+        [self.rough_ground, self.agile, self.steady, self.resting, self.starting, left, right]
     }
 }
 
@@ -230,7 +235,7 @@ impl PolicyGraph {
         all.filter(|(id, _)| !self.is_variant(*id))
     }
 
-    /// True for a node that is a variant of another one: for rough ground, an agile one or a steady one.
+    /// True for a node that is a variant of another one: for rough ground, an agile one and so on.
     #[must_use]
     pub fn is_variant(&self, id: NodeId) -> bool {
         self.nodes.iter().any(|node| node.variants().contains(&Some(id)))

@@ -94,6 +94,7 @@ mod pack_bytes;
 mod pack_error;
 mod pack_parts;
 mod path;
+mod pushed_aside;
 mod report;
 mod route;
 mod scorer;

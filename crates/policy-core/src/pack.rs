@@ -72,6 +72,13 @@ impl CharacterPack {
                 agile: variant(&p.agile)?,
                 steady: variant(&p.steady)?,
                 resting: variant(&p.resting)?,
+                starting: variant(&p.starting)?,
+                pushed_aside: match &p.pushed_aside {
+                    Some([left, right]) => {
+                        Some([find_node(field(), left, &names)?, find_node(field(), right, &names)?])
+                    }
+                    None => None,
+                },
             })
         });
         let nodes = nodes.collect::<Result<Vec<_>, PackError>>()?;

@@ -1,7 +1,7 @@
 //! A [`ControllerState`] as bytes, little-endian, of one length for each pack.
 //!
 //! The side of a turn follows from the target in the report. Order: version, report, fall timers, frame history, resting blend, interrupted skill, joint targets, hand-over, settling, course,
-//! giving way, unevenness, urgency, capture step. An absent value is a zero flag and zeros, so that equal states give equal bytes.
+//! giving way, unevenness, urgency, capture step, push aside. An absent value is a zero flag and zeros, so that equal states give equal bytes.
 
 use crate::agility::Urgency;
 use crate::blend::{Blend, BlendTerm, MAX_BLEND_TERMS};
@@ -12,12 +12,13 @@ use crate::ids::{NodeId, PolicyId, SkillId};
 use crate::mlp::MAX_LAYERS;
 use crate::pack::CharacterPack;
 use crate::path::GraphPosition;
+use crate::pushed_aside::PushedAside;
 use crate::report::{StateFault, TickReport};
 use crate::skill::{Refusal, SkillEnd, SkillProgress};
 use crate::steering::side_of;
 
 /// First four bytes: `PSS` and the version.
-const VERSION: u32 = u32::from_le_bytes(*b"PSS\x09");
+const VERSION: u32 = u32::from_le_bytes(*b"PSS\x0a");
 
 const POSITION_LEN: usize = 2 + 2 + 4;
 const BLEND_LEN: usize = 1 + MAX_BLEND_TERMS * (2 + 4 * MAX_LAYERS);
@@ -25,7 +26,7 @@ const SKILL_LEN: usize = 3;
 const PROGRESS_LEN: usize = SKILL_LEN + 4 + 4 + 1 + 4;
 const REPORT_LEN: usize =
     2 * POSITION_LEN + BLEND_LEN + 1 + 8 + PROGRESS_LEN + 2 * SKILL_LEN + 2 * (SKILL_LEN + 1) + 3;
-const FIXED_LEN: usize = 4 + REPORT_LEN + 8 + 2 + BLEND_LEN + 4 + SKILL_LEN + 12 + 12 + 12 + 28 + 24;
+const FIXED_LEN: usize = 4 + REPORT_LEN + 8 + 2 + BLEND_LEN + 4 + SKILL_LEN + 12 + 12 + 12 + 36 + 24 + 9;
 
 impl ControllerState {
     /// Number of bytes; one for all states of a pack.
@@ -56,10 +57,15 @@ impl ControllerState {
         let steering = self.steering;
         w.floats(&[steering.velocity.x, steering.velocity.y, steering.trim]);
         w.floats(&[self.give_way.speed, self.give_way.pace, self.give_way.stop_secs]);
-        let Urgency { to_move, to_rest, to_stand, at_rest, as_asked, at_pace } = self.urgency;
+        let Urgency { to_move, to_rest, to_stand, at_rest, as_asked, at_pace, to_start, start_secs } =
+            self.urgency;
         w.floats(&[self.unevenness, to_move, to_rest, to_stand, at_rest, as_asked, at_pace]);
+        w.floats(&[to_start, start_secs]);
         let CaptureStep { share, secs, way, facing } = self.capture_step;
         w.floats(&[share, secs, way.x, way.y, facing.x, facing.y]);
+        let PushedAside { share, secs, left } = self.pushed_aside;
+        w.floats(&[share, secs]);
+        w.put([u8::from(left)]);
         debug_assert_eq!(w.at, w.out.len());
     }
 
@@ -109,10 +115,13 @@ impl ControllerState {
         let urgency = &mut self.urgency;
         (urgency.to_move, urgency.to_rest, urgency.to_stand) = (r.float(), r.float(), r.float());
         (urgency.at_rest, urgency.as_asked, urgency.at_pace) = (r.float(), r.float(), r.float());
+        (urgency.to_start, urgency.start_secs) = (r.float(), r.float());
         let steps = &mut self.capture_step;
         (steps.share, steps.secs) = (r.float(), r.float());
         (steps.way.x, steps.way.y) = (r.float(), r.float());
         (steps.facing.x, steps.facing.y) = (r.float(), r.float());
+        let aside = &mut self.pushed_aside;
+        (aside.share, aside.secs, aside.left) = (r.float(), r.float(), r.flag()?);
         Ok(())
     }
 }

@@ -1,12 +1,14 @@
 //! Variants: a policy gives shares of its weight to others that were trained on from it: one for rough ground, one that turns, starts
-//! or stops quickly, one that stands still or goes straight, one that rests in a gait that moves.
+//! or stops quickly, one that stands still or goes straight, one that rests in a gait that moves, one that sets off from a stand.
 //!
-//! All are of one family, so the straight lines between their parameters are good policies too.
+//! All are of one family, so the straight lines between their parameters are good policies too. Policies that catch a push aside are not:
+//! they take all at once.
 
 use crate::agility::{Urgency, steady_share};
 use crate::blend::{Blend, BlendTerm};
 use crate::graph::PolicyGraph;
 use crate::ids::{NodeId, PolicyId};
+use crate::pushed_aside::PushedAside;
 
 /// Where a value lies between two, in [0, 1].
 pub(crate) fn within(value: f32, [begins, fully]: [f32; 2]) -> f32 {
@@ -21,16 +23,19 @@ pub(crate) fn crossed(before: f32, now: f32, [to_all, to_nothing]: [f32; 2], dt:
 /// How far the variants of a policy act, each in [0, 1].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Shares {
-    /// Share of the variant for rough ground.
+    /// Share of the policy that catches a push aside.
+    pub(crate) aside: PushedAside,
+    /// Share of the variant for rough ground in what that leaves.
     pub(crate) rough_ground: f32,
-    /// Share of the agile variant in what the one for rough ground leaves: of gaits that move, and of those that stand. The resting variant
-    /// has a share of what both leave, and the steady one of what is left then. A gait without a resting variant rests by its agile one.
+    /// Share of the starting variant in what the one for rough ground leaves, then of the agile one: of gaits that move, and of those that
+    /// stand. The resting variant has a share of what they leave, and the steady one of what is left then. A gait without a resting variant
+    /// rests by its agile one.
     pub(crate) agile: Urgency,
 }
 
 /// The blend with a share of each policy given to its variants, where it has them.
 pub(crate) fn with_variants(graph: &PolicyGraph, blend: Blend, shares: Shares) -> Blend {
-    if shares.rough_ground <= 0.0 && shares.agile == Urgency::default() {
+    if shares.rough_ground <= 0.0 && shares.agile == Urgency::default() && shares.aside.share <= 0.0 {
         return blend;
     }
     let mut shared = Blend::default();
@@ -39,8 +44,13 @@ pub(crate) fn with_variants(graph: &PolicyGraph, blend: Blend, shares: Shares) -
         let variant = |of: fn(&crate::graph::Node) -> Option<NodeId>, share: f32| {
             node.and_then(of).map(|variant| (PolicyId::from(variant), share))
         };
-        let rough = variant(|node| node.rough_ground, shares.rough_ground);
-        let left = 1.0 - rough.map_or(0.0, |(_, share)| share);
+        let caught = node.and_then(|node| node.pushed_aside);
+        let caught = caught.map(|both| (PolicyId::from(shares.aside.of(both)), shares.aside.share));
+        let left = 1.0 - caught.map_or(0.0, |(_, share)| share);
+        let rough = variant(|node| node.rough_ground, left * shares.rough_ground);
+        let left = left - rough.map_or(0.0, |(_, share)| share);
+        let starting = variant(|node| node.starting, left * shares.agile.to_start);
+        let left = left - starting.map_or(0.0, |(_, share)| share);
         let stands = node.is_some_and(crate::graph::Node::stands);
         let Urgency { to_move, to_rest, to_stand, .. } = shares.agile;
         let rests = node.is_some_and(|node| node.resting.is_some());
@@ -56,10 +66,10 @@ pub(crate) fn with_variants(graph: &PolicyGraph, blend: Blend, shares: Shares) -
         let steadily = if stands { shares.agile.at_rest } else { shares.agile.as_asked };
         let steady = variant(|node| node.steady, left * steady_share(steadily));
         let own = left - steady.map_or(0.0, |(_, share)| share);
-        let parts = [Some((term.policy, own)), rough, agile, resting, steady];
+        let parts = [Some((term.policy, own)), caught, rough, starting, agile, resting, steady];
         for (policy, share) in parts.into_iter().flatten().filter(|(_, share)| *share > 0.0) {
             let weights = term.weights.map(|weight| share * weight);
-            if shared.push(BlendTerm { policy, weights }).is_err() {
+            if shared.add(BlendTerm { policy, weights }).is_err() {
                 return blend;
             }
         }

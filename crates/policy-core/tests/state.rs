@@ -99,10 +99,13 @@ fn bad_bytes_are_refused_and_leave_a_new_state() {
     assert!(matches!(refused(&|b| b[3] ^= 0x80), StateError::Version { .. }));
     assert!(matches!(refused(&|b| b[4] = 200), StateError::Field { field: "position", .. }));
     let numbers = |b: &mut Vec<u8>| {
-        let at = b.len() - 8;
+        // Behind the last number lies a flag.
+        let at = b.len() - 5;
         b[at..at + 4].copy_from_slice(&f32::NAN.to_le_bytes());
     };
     assert!(matches!(refused(&numbers), StateError::Field { field: "numbers", .. }));
+    let flag = |b: &mut Vec<u8>| *b.last_mut().unwrap() = 2;
+    assert!(matches!(refused(&flag), StateError::Field { field: "a flag", .. }));
 }
 
 #[test]

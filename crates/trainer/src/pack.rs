@@ -11,10 +11,12 @@ use policy_core::training::{ActionScaling, Layer, MlpError, PackTensors};
 use policy_core::{CharacterPack, Mlp, PackError};
 
 mod distil;
+mod mirror;
 mod plan;
 mod rollouts;
 
 pub use distil::{Agreement, DISTILLED_HIDDEN, distil};
+pub use mirror::mirrored;
 pub use plan::{PackPlan, PlannedPolicy};
 
 use crate::checkpoint::{ACTOR, Checkpoint, CheckpointError, DISCRIMINATOR, EMA};
@@ -184,6 +186,8 @@ fn policies(plan: &PackPlan, trained: &[TrainedSkill]) -> Result<(Vec<Mlp>, Vec<
             agile: planned.agile.clone(),
             steady: planned.steady.clone(),
             resting: planned.resting.clone(),
+            starting: planned.starting.clone(),
+            pushed_aside: planned.pushed_aside.clone(),
             origin: skill.origin.clone(),
         });
     }

@@ -110,6 +110,8 @@ fn policy_entry(name: &str, sizes: &[usize]) -> PolicyEntry {
         agile: None,
         steady: None,
         resting: None,
+        starting: None,
+        pushed_aside: None,
         origin: "made up".into(),
     }
 }

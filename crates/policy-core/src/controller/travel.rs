@@ -9,6 +9,7 @@ use crate::fall::{Heights, step_heights};
 use crate::give_way::GiveWayState;
 use crate::ids::NodeId;
 use crate::path::GraphPosition;
+use crate::pushed_aside::PushedAside;
 use crate::state::CharacterState;
 use crate::steering::SteeringState;
 use crate::strafe::waits_before_leaving;
@@ -103,6 +104,25 @@ impl Controller {
                 self.state.capture_step.next(place, (skeleton, state), command.target, dt)
             }
             false => CaptureStep::default(),
+        }
+    }
+
+    /// Stands for a moment where a push tips the body over to a side. Skills, falls and blends chosen by hand are none of its business.
+    pub(super) fn next_pushed_aside(
+        &self,
+        state: &CharacterState,
+        command: &Command,
+        dt: f32,
+    ) -> PushedAside {
+        let report = &self.state.report;
+        let acts = report.skill.is_none() && !report.fallen && command.blend.is_none();
+        match self.config.capture_steps && acts {
+            true => {
+                let place = (self.pack.graph(), report.position);
+                let (skeleton, calm) = (self.pack.skeleton(), (self.state.urgency.at_pace, self.state.unevenness));
+                self.state.pushed_aside.next(place, (skeleton, state), calm, dt)
+            }
+            false => PushedAside::default(),
         }
     }
 

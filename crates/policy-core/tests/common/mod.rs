@@ -98,6 +98,8 @@ pub fn manifest() -> Manifest {
         agile: None,
         steady: None,
         resting: None,
+        starting: None,
+        pushed_aside: None,
         origin: "made up".into(),
     };
     let edge = |a: &str, b: &str| EdgeEntry {

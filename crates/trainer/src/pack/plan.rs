@@ -61,6 +61,9 @@ pub struct PlannedPolicy {
     /// Skill of the run that the policy is of, where that is not its name.
     #[serde(default)]
     pub skill: Option<String>,
+    /// Policy, further up in the plan, whose mirror image it is. It is not trained.
+    #[serde(default)]
+    pub mirror_of: Option<String>,
     /// Name of its variant for rough ground.
     #[serde(default)]
     pub rough_ground: Option<String>,
@@ -73,6 +76,12 @@ pub struct PlannedPolicy {
     /// Name of its resting variant.
     #[serde(default)]
     pub resting: Option<String>,
+    /// Name of its starting variant.
+    #[serde(default)]
+    pub starting: Option<String>,
+    /// Names of the policies that catch a push to its left, and to its right.
+    #[serde(default)]
+    pub pushed_aside: Option<[String; 2]>,
 }
 
 impl PackPlan {
@@ -93,10 +102,12 @@ impl PackPlan {
     pub fn only(mut self, trained: impl Fn(&str) -> bool) -> Self {
         self.policies.retain(|p| trained(&p.name));
         for policy in &mut self.policies {
-            let PlannedPolicy { rough_ground, agile, steady, resting, .. } = policy;
-            for variant in [rough_ground, agile, steady, resting] {
+            let PlannedPolicy { rough_ground, agile, steady, resting, starting, .. } = policy;
+            for variant in [rough_ground, agile, steady, resting, starting] {
                 *variant = variant.take().filter(|name| trained(name));
             }
+            let both = policy.pushed_aside.take();
+            policy.pushed_aside = both.filter(|names| names.iter().all(|name| trained(name)));
         }
         self.edges.retain(|e| e.nodes.iter().all(|n| trained(n)));
         let edges = self.edges.clone();

@@ -138,6 +138,8 @@ pub fn quadruped() -> CharacterPack {
         agile: None,
         steady: None,
         resting: None,
+        starting: None,
+        pushed_aside: None,
         origin: "made up".into(),
     };
     let manifest = Manifest {

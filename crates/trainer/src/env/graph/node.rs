@@ -81,6 +81,8 @@ pub(super) fn policy_graph(
         agile: None,
         steady: None,
         resting: None,
+        starting: None,
+        pushed_aside: None,
     };
     let policies = vec![policy; nodes.len()];
     PolicyGraph::from_parts(nodes.iter().map(known).collect(), &edges, paths, &policies)

@@ -96,6 +96,9 @@ pub struct InPlayConfig {
     /// variant of a standing gait starts up to 0.3 s after the stick is released, the variant of a moving gait from standing or mid-gait.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub maximum_speed_mps: Option<f32>,
+    /// Out of a stand alone, for a variant that sets off.
+    #[serde(default, skip_serializing_if = "core::ops::Not::not")]
+    pub from_stand: bool,
 }
 
 /// Starts that were played and have not failed, to return to.
@@ -142,7 +145,8 @@ impl Env {
         let graph = pack.graph();
         let stand = graph.node_named(OUT_OF[0]).unwrap_or_default();
         controller.place_at(GraphPosition::node(stand));
-        let out_of = graph.node_named(OUT_OF[self.rng.index(OUT_OF.len())]).unwrap_or(stand);
+        let out_of = OUT_OF[if config.from_stand { 0 } else { self.rng.index(OUT_OF.len()) }];
+        let out_of = graph.node_named(out_of).unwrap_or(stand);
         let way_secs = if out_of == stand { 0.0 } else { self.rng.range(0.3, WAY_SECS) };
         let goes = way_secs > 0.0 && self.rng.chance(0.5);
         // Once it is as slow as that, and on its way to a stand.

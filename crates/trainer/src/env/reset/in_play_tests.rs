@@ -12,7 +12,7 @@ fn starts(speed_mps: f32, maximum_speed_mps: Option<f32>, tracking_weight: f32) 
     let clips = Demonstrations::from_clips(&[(still(30), 1.0, false)], &model, &normalisers.frame).unwrap();
     let mut config = EnvironmentConfig::default();
     (config.reward.tracking_weight, config.command.speed_mps) = (tracking_weight, speed_mps);
-    config.reset.in_play = Some(InPlayConfig { share: 1.0, maximum_speed_mps });
+    config.reset.in_play = Some(InPlayConfig { share: 1.0, maximum_speed_mps, from_stand: false });
     let gaits = Controller::with_config(pack, ControllerConfig { auto_recover: false, ..Default::default() });
     let setting = Setting::alone("learns", (model, normalisers), config);
     let demonstrations = [&clips];
