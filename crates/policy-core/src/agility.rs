@@ -168,7 +168,8 @@ impl Urgency {
         let variant = graph.node(position.nearest_node()).starting;
         let speed = variant.and_then(|variant| graph.node(variant).speed_mps);
         let along = velocity.dot((target - root.position.truncate()).normalize_or_zero());
-        let goes_on = |speed: f32| along < speed && moving_mps(graph, goal).is_some_and(|asked| asked >= speed);
+        let goes_on =
+            |speed: f32| along < speed && moving_mps(graph, goal).is_some_and(|asked| asked >= speed);
         if speed.is_some_and(goes_on) { left } else { 0.0 }
     }
 }

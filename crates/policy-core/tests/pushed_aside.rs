@@ -36,7 +36,8 @@ fn pack_with(change: impl FnOnce(&mut Manifest)) -> Arc<CharacterPack> {
 
 /// A controller of a character that has walked at its pace for a second.
 fn walking(change: impl FnOnce(&mut Manifest), capture_steps: bool) -> Controller {
-    let config = ControllerConfig { capture_steps, start: n(1), give_way: None, ..ControllerConfig::default() };
+    let config =
+        ControllerConfig { capture_steps, start: n(1), give_way: None, ..ControllerConfig::default() };
     let mut controller = Controller::with_config(pack_with(change), config);
     for _ in 0..30 {
         tick(&mut controller, &moving(0.0));

@@ -119,7 +119,8 @@ impl Controller {
         match self.config.capture_steps && acts {
             true => {
                 let place = (self.pack.graph(), report.position);
-                let (skeleton, calm) = (self.pack.skeleton(), (self.state.urgency.at_pace, self.state.unevenness));
+                let (skeleton, calm) =
+                    (self.pack.skeleton(), (self.state.urgency.at_pace, self.state.unevenness));
                 self.state.pushed_aside.next(place, (skeleton, state), calm, dt)
             }
             false => PushedAside::default(),

@@ -15,7 +15,7 @@ use super::graph::TrainingGraph;
 use super::meetings::Company;
 use super::normalisers::Normalisers;
 use super::reset::{HandOver, PlayedStarts, PreFailureStates};
-use super::reward::{Pace, RewardTerms, Task, foot_slip_mps, standing_reward, target_reward};
+use super::reward::{Pace, RewardTerms, Task, foot_slip_mps, paid_velocity, standing_reward, target_reward};
 use super::termination::TerminationHeights;
 use super::track_clip::Tracking;
 use crate::ppo::Done;
@@ -229,6 +229,7 @@ impl Env {
             speed_scale_mps: graph.speed_scale_mps(position),
             facing: self.command.facing().map(|facing| (facing, graph.strafe(position).0)),
         };
+        let velocity = paid_velocity(config, context.skeleton, &self.state, velocity);
         let height = (config.height_share, graph.root_metres(position));
         let terms = match config.task {
             Task::Target if self.command.is_late() => RewardTerms::default(),

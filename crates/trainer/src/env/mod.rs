@@ -35,7 +35,9 @@ pub use normalisers::Normalisers;
 pub use randomisation::RandomisationConfig;
 pub(crate) use reset::PLAYED;
 pub use reset::{HandOver, HandOverConfig, InPlayConfig, ResetConfig};
-pub use reward::{Pace, RewardConfig, RewardTerms, Task, foot_slip_mps, standing_reward, target_reward};
+pub use reward::{
+    Pace, RewardConfig, RewardTerms, Task, foot_slip_mps, paid_velocity, standing_reward, target_reward,
+};
 pub use termination::{Termination, TerminationConfig, TerminationHeights, TerminationRule};
 pub use tracking::TrackedState;
 pub use vec_env::{EpisodeReport, NodeReport, REPORTED_NODES, VecEnv};

@@ -34,6 +34,9 @@ pub struct RewardConfig {
     pub turning_style_factor: f32,
     /// Weight of the squared sideways speed beside the squared error of the speed.
     pub sideways_weight: f32,
+    /// Share of the head's velocity in the velocity that is paid for; the rest is the root's. Paid for the root alone, a character that sets
+    /// off pushes its pelvis ahead and leans back.
+    pub head_speed_share: f32,
     /// Share of the speed reward that falls evenly with the velocity error, from 1 at none to 0 at twice the commanded speed.
     /// It has a slope where the bells are flat: right after the stick was flipped.
     pub linear_speed_share: f32,
@@ -68,6 +71,7 @@ impl Default for RewardConfig {
             prompt_start: false,
             turning_style_factor: 1.0,
             sideways_weight: 0.25,
+            head_speed_share: 0.0,
             linear_speed_share: 0.0,
             strict_facing_share: 0.0,
             facing_factor: 0.0,
@@ -147,6 +151,13 @@ const STRICT_FACING_RADIANS: f32 = 0.4;
 
 /// Angles to the target between which a character turns ever more, radians.
 const TURNING_RADIANS: [f32; 2] = [0.4, 1.2];
+
+/// The velocity that is paid for: that of the root over the tick, and the head's in its share. A skeleton without a head has the root's alone.
+#[must_use]
+pub fn paid_velocity(config: &RewardConfig, skeleton: &Skeleton, state: &CharacterState, root: Vec2) -> Vec2 {
+    let head = skeleton.head().map(|head| state.body(head).linear_velocity.truncate());
+    root.lerp(head.unwrap_or(root), config.head_speed_share)
+}
 
 /// Reward for going to `target` and facing it. `velocity` is that of the root over the tick, metres per second.
 ///

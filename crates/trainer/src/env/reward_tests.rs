@@ -168,3 +168,16 @@ fn what_strafes_is_paid_for_facing_its_own_way_and_little_for_speed_without_it()
     let stands = task(Vec2::X, Vec2::ZERO, Vec2::ZERO);
     assert!((stands - 1.0).abs() < 1e-6, "standing: {stands}");
 }
+
+#[test]
+fn a_pelvis_ahead_of_its_head_is_paid_for_half_of_its_speed() {
+    let skeleton = Skeleton::humanoid();
+    let mut state = CharacterState::new(&skeleton);
+    state.body_mut(body("head")).linear_velocity = glam::Vec3::new(-0.2, 0.4, 1.0);
+    let paid = |head_speed_share| {
+        let config = RewardConfig { head_speed_share, ..RewardConfig::default() };
+        paid_velocity(&config, &skeleton, &state, Vec2::X)
+    };
+    assert_eq!(paid(0.0), Vec2::X);
+    assert!(paid(0.5).abs_diff_eq(Vec2::new(0.4, 0.2), 1e-6));
+}

@@ -36,7 +36,11 @@ pub fn mirrored(
     scaling: &ActionScaling,
 ) -> Result<Network, String> {
     let (inputs, outputs) = (image_of_inputs(skeleton), image_of_joints(skeleton)?);
-    assert_eq!([policy.inputs(), policy.outputs()], [inputs.len(), outputs.len()], "a policy of the skeleton");
+    assert_eq!(
+        [policy.inputs(), policy.outputs()],
+        [inputs.len(), outputs.len()],
+        "a policy of the skeleton"
+    );
     let layers = policy.layers();
     // A network has at least one layer.
     let (first, last) = (&layers[0], &layers[layers.len() - 1]);
@@ -115,8 +119,7 @@ fn twin(skeleton: &Skeleton, body: usize) -> usize {
 #[cfg(test)]
 mod tests {
     use glam::{Quat, Vec2, Vec3};
-    use policy_core::training::target_input;
-    use policy_core::{CharacterState, observe_into};
+    use policy_core::{CharacterState, observe_into, target_input};
     use random::Rng;
 
     use super::*;
@@ -154,9 +157,8 @@ mod tests {
         let mut rng = Rng::new(7, 0);
         let (inputs, joints) = (skeleton.policy_input_len(), skeleton.joint_count());
         let policy = Network::new(&[inputs, 24, 12, joints], 1.0, &mut rng);
-        let mut numbers = |count: usize, least: f32| -> Vec<f32> {
-            (0..count).map(|_| least + rng.uniform()).collect()
-        };
+        let mut numbers =
+            |count: usize, least: f32| -> Vec<f32> { (0..count).map(|_| least + rng.uniform()).collect() };
         let len = skeleton.observation_len();
         let normaliser =
             Normaliser::from_mean_and_deviation(&numbers(len, -0.5), &numbers(len, 2.0)).unwrap();

@@ -8,11 +8,15 @@ use super::*;
 
 /// Speeds at the starts of 16 tries of a skill, and how many of them track a clip.
 fn starts(speed_mps: f32, maximum_speed_mps: Option<f32>, tracking_weight: f32) -> (Vec<f32>, usize) {
+    starts_of(speed_mps, InPlayConfig { share: 1.0, maximum_speed_mps, from_stand: false }, tracking_weight)
+}
+
+fn starts_of(speed_mps: f32, in_play: InPlayConfig, tracking_weight: f32) -> (Vec<f32>, usize) {
     let (model, pack, normalisers) = shipped();
     let clips = Demonstrations::from_clips(&[(still(30), 1.0, false)], &model, &normalisers.frame).unwrap();
     let mut config = EnvironmentConfig::default();
     (config.reward.tracking_weight, config.command.speed_mps) = (tracking_weight, speed_mps);
-    config.reset.in_play = Some(InPlayConfig { share: 1.0, maximum_speed_mps, from_stand: false });
+    config.reset.in_play = Some(in_play);
     let gaits = Controller::with_config(pack, ControllerConfig { auto_recover: false, ..Default::default() });
     let setting = Setting::alone("learns", (model, normalisers), config);
     let demonstrations = [&clips];
@@ -45,4 +49,11 @@ fn a_variant_that_stands_starts_where_the_stick_is_let_go_and_one_that_moves_any
         assert!(speeds.len() >= 12 && tracking == 0, "{speeds:?}, {tracking}");
         assert!(speeds.iter().any(|speed| *speed > 0.5), "{speeds:?}");
     }
+}
+
+#[test]
+fn a_variant_that_sets_off_starts_out_of_a_stand_alone() {
+    let in_play = InPlayConfig { share: 1.0, maximum_speed_mps: None, from_stand: true };
+    let (speeds, _) = starts_of(1.2, in_play, 0.0);
+    assert!(speeds.len() >= 12 && speeds.iter().all(|speed| *speed < STANDS_MPS), "{speeds:?}");
 }
