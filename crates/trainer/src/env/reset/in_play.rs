@@ -29,6 +29,7 @@ pub(crate) const PLAYED: &[&str] = &[
     "walk_steady",
     "jog_steady",
     "run_steady",
+    "walk_start",
     "roll",
 ];
 
