@@ -43,8 +43,9 @@ const START_CROSS_SECS: [f32; 2] = [0.03, 0.2];
 /// A start takes at most so long, seconds.
 const START_SECS: f32 = 1.0;
 
-/// A character stands that moves no faster, metres per second.
-const STANDS_MPS: f32 = 0.4;
+/// It has stood for so long before a start, in the measure of [`Urgency::at_rest`]: 0.5 s. Out of a stop, or right after a skill, nothing has
+/// learned to start.
+const STOOD: f32 = 0.3;
 
 /// A character goes at its pace after this time, seconds.
 const PACE_SECS: f32 = 0.3;
@@ -74,7 +75,7 @@ pub(crate) struct Urgency {
     pub(crate) at_pace: f32,
     /// 1 while it sets off from a stand: for the starting variants.
     pub(crate) to_start: f32,
-    /// How long a start may take yet, seconds: all of its time while it stands without a target, none once it is fast enough.
+    /// How long a start may take yet, seconds: all of its time while it has stood still for a while, none once it is fast enough.
     pub(crate) start_secs: f32,
 }
 
@@ -160,11 +161,7 @@ impl Urgency {
         let root = state.root();
         let velocity = root.linear_velocity.truncate();
         let left = (self.start_secs - dt).max(0.0);
-        let Some(target) = target else {
-            let stands = position.as_node().is_some_and(|node| graph.node(node).stands());
-            let still = velocity.length_squared() < STANDS_MPS * STANDS_MPS;
-            return if stands && still { START_SECS } else { left };
-        };
+        let Some(target) = target else { return if self.at_rest >= STOOD { START_SECS } else { left } };
         let variant = graph.node(position.nearest_node()).starting;
         let speed = variant.and_then(|variant| graph.node(variant).speed_mps);
         let along = velocity.dot((target - root.position.truncate()).normalize_or_zero());

@@ -238,6 +238,10 @@ impl Controller {
             }
             false => Urgency::default(),
         };
+        // What held it up is still there when it goes on: that is no start.
+        if self.state.give_way.stop_secs > 0.0 {
+            self.state.urgency.start_secs = 0.0;
+        }
         self.state.capture_step = self.next_capture_step(state, &command, dt);
         self.state.pushed_aside = self.next_pushed_aside(state, &command, dt);
         self.choose_blend(state, &command);

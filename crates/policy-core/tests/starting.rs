@@ -6,7 +6,9 @@ use std::sync::Arc;
 
 use common::{acted, hand_over, policy, standing, weight};
 use glam::{Vec2, Vec3};
-use policy_core::{CharacterPack, CharacterState, Command, Controller, Goal, PathId, Skeleton};
+use policy_core::{
+    CharacterPack, CharacterState, Command, Controller, ControllerConfig, Goal, PathId, Skeleton,
+};
 
 const DT: f32 = 1.0 / 30.0;
 
@@ -25,11 +27,17 @@ fn pack() -> Arc<CharacterPack> {
     Arc::new(CharacterPack::from_parts(manifest, common::tensors(0.0)).unwrap())
 }
 
-/// A controller of a character that stands, with nothing asked yet.
-fn stands() -> Controller {
-    let mut controller = Controller::new(pack());
-    tick(&mut controller, 0.0, None);
+/// A controller of a character that has stood for so many ticks, with nothing asked.
+fn stood(ticks: usize) -> Controller {
+    let config = ControllerConfig { give_way: None, ..ControllerConfig::default() };
+    let mut controller = Controller::with_config(pack(), config);
+    (0..ticks).for_each(|_| assert_eq!(tick(&mut controller, 0.0, None), 0.0));
     controller
+}
+
+/// The same after a second.
+fn stands() -> Controller {
+    stood(30)
 }
 
 fn moving(speed: f32) -> CharacterState {
@@ -76,8 +84,7 @@ fn a_start_takes_a_second_at_most() {
     let ticks = (0..90).take_while(|_| tick(&mut controller, 0.1, Some(1.0)) == 1.0).count();
     assert!((28..=30).contains(&ticks), "{ticks} ticks");
     assert_eq!((0..7).map(|_| tick(&mut controller, 0.1, Some(1.0))).last(), Some(0.0));
-    tick(&mut controller, 0.0, None);
-    (0..30).for_each(|_| _ = tick(&mut controller, 0.0, None));
+    (0..60).for_each(|_| _ = tick(&mut controller, 0.0, None));
     assert_eq!(tick(&mut controller, 0.0, Some(1.0)), 1.0, "it stood again");
 }
 
@@ -86,9 +93,10 @@ fn slow_gaits_light_sticks_and_characters_that_move_have_none() {
     assert_eq!(tick(&mut stands(), 0.0, Some(0.4)), 0.0, "a light stick");
     let mut down = stands();
     assert_eq!(share(&mut down, &moving(0.0), PathId::new(1), Some(2.0)), 0.0, "down to a crouch");
-    let mut controller = Controller::new(pack());
+    let mut controller = stood(0);
     (0..60).for_each(|_| assert_eq!(tick(&mut controller, 0.6, None), 0.0, "it does not stand still"));
     assert_eq!(tick(&mut controller, 0.6, Some(1.0)), 0.0);
+    assert_eq!(tick(&mut stood(8), 0.0, Some(1.0)), 0.0, "it has hardly come to a stand");
     let mut brakes = stands();
     tick(&mut brakes, 0.0, Some(1.0));
     (0..7).for_each(|_| _ = tick(&mut brakes, 0.5, None));
@@ -96,10 +104,19 @@ fn slow_gaits_light_sticks_and_characters_that_move_have_none() {
 }
 
 #[test]
+fn what_held_a_character_up_is_no_start() {
+    let mut controller = Controller::new(pack());
+    (0..60).for_each(|_| _ = tick(&mut controller, 0.0, None));
+    (0..60).for_each(|_| _ = tick(&mut controller, 1.0, Some(1.0)));
+    let shares: Vec<f32> = (0..60).map(|_| tick(&mut controller, 0.0, Some(1.0))).collect();
+    assert!(shares.iter().all(|share| *share == 0.0), "it gives way, stands and pushes on: {shares:?}");
+}
+
+#[test]
 fn a_saved_state_goes_on_with_its_start() {
     let mut controller = stands();
     tick(&mut controller, 0.0, Some(1.0));
-    let mut other = Controller::new(pack());
+    let mut other = stood(0);
     hand_over(&controller, &mut other);
     for speed in [0.3, 0.6, 0.9, 0.9] {
         let shares = [&mut controller, &mut other].map(|c| tick(c, speed, Some(1.0)));
