@@ -7,7 +7,7 @@ use std::sync::Arc;
 use common::{acted, hand_over, policy, standing, weight};
 use glam::{Vec2, Vec3};
 use policy_core::{
-    CharacterPack, CharacterState, Command, Controller, ControllerConfig, Goal, PathId, Skeleton,
+    CharacterPack, CharacterState, Command, Controller, ControllerConfig, GiveWay, Goal, PathId, Skeleton,
 };
 
 const DT: f32 = 1.0 / 30.0;
@@ -105,10 +105,11 @@ fn slow_gaits_light_sticks_and_characters_that_move_have_none() {
 
 #[test]
 fn what_held_a_character_up_is_no_start() {
-    let mut controller = Controller::new(pack());
-    (0..60).for_each(|_| _ = tick(&mut controller, 0.0, None));
+    let give_way = Some(GiveWay { stop_secs: 2.0, ..GiveWay::default() });
+    let config = ControllerConfig { give_way, ..ControllerConfig::default() };
+    let mut controller = Controller::with_config(pack(), config);
     (0..60).for_each(|_| _ = tick(&mut controller, 1.0, Some(1.0)));
-    let shares: Vec<f32> = (0..60).map(|_| tick(&mut controller, 0.0, Some(1.0))).collect();
+    let shares: Vec<f32> = (0..120).map(|_| tick(&mut controller, 0.0, Some(1.0))).collect();
     assert!(shares.iter().all(|share| *share == 0.0), "it gives way, stands and pushes on: {shares:?}");
 }
 
