@@ -242,8 +242,7 @@ impl Controller {
         if self.state.give_way.stop_secs > 0.0 {
             self.state.urgency.start_secs = 0.0;
         }
-        self.state.capture_step = self.next_capture_step(state, &command, dt);
-        self.state.pushed_aside = self.next_pushed_aside(state, &command, dt);
+        self.keep_balance(state, &command, dt);
         self.choose_blend(state, &command);
         self.observe(state, &command, dt);
         true

@@ -88,43 +88,24 @@ impl Controller {
         }
     }
 
-    /// Steps under a body that tips over. Skills, falls and blends chosen by hand are none of its business.
-    pub(super) fn next_capture_step(
-        &self,
-        state: &CharacterState,
-        command: &Command,
-        dt: f32,
-    ) -> CaptureStep {
+    /// Steps under a body that tips over backwards, and stands where a push tips it over to a side.
+    pub(super) fn keep_balance(&mut self, state: &CharacterState, command: &Command, dt: f32) {
         let report = &self.state.report;
-        let acts = report.skill.is_none() && !report.fallen && command.blend.is_none();
-        match self.config.capture_steps && acts {
+        // Skills, falls and blends chosen by hand are none of its business.
+        let acts =
+            self.config.capture_steps && report.skill.is_none() && !report.fallen && command.blend.is_none();
+        let (graph, skeleton) = (self.pack.graph(), self.pack.skeleton());
+        let place = (graph, report.position);
+        (self.state.capture_step, self.state.pushed_aside) = match acts {
             true => {
-                let (graph, skeleton) = (self.pack.graph(), self.pack.skeleton());
-                let place = (graph, report.position);
-                self.state.capture_step.next(place, (skeleton, state), command.target, dt)
+                let calm = (self.state.urgency.at_pace, self.state.unevenness);
+                (
+                    self.state.capture_step.next(place, (skeleton, state), command.target, dt),
+                    self.state.pushed_aside.next(place, (skeleton, state), calm, dt),
+                )
             }
-            false => CaptureStep::default(),
-        }
-    }
-
-    /// Stands for a moment where a push tips the body over to a side. Skills, falls and blends chosen by hand are none of its business.
-    pub(super) fn next_pushed_aside(
-        &self,
-        state: &CharacterState,
-        command: &Command,
-        dt: f32,
-    ) -> PushedAside {
-        let report = &self.state.report;
-        let acts = report.skill.is_none() && !report.fallen && command.blend.is_none();
-        match self.config.capture_steps && acts {
-            true => {
-                let place = (self.pack.graph(), report.position);
-                let (skeleton, calm) =
-                    (self.pack.skeleton(), (self.state.urgency.at_pace, self.state.unevenness));
-                self.state.pushed_aside.next(place, (skeleton, state), calm, dt)
-            }
-            false => PushedAside::default(),
-        }
+            false => (CaptureStep::default(), PushedAside::default()),
+        };
     }
 
     /// The target that the policy is to see. Without one there is no course to hold, and the target of a skill stays as it is. A
