@@ -10,11 +10,11 @@ use policy_core::{BodyId, Skeleton};
 
 use crate::nn::Network;
 
-/// Signs of the coordinates of a place, a velocity or an axis in the mirror.
-const PLACE: [f32; 3] = [1.0, -1.0, 1.0];
+/// Signs of the coordinates of a polar vector in the mirror: a position, a velocity, an axis of a body.
+const POLAR: [f32; 3] = [1.0, -1.0, 1.0];
 
-/// Signs of the coordinates of a turn, such as an angular velocity.
-const TURN: [f32; 3] = [-1.0, 1.0, -1.0];
+/// Signs of those of an axial vector: an angular velocity, the axis of a hinge.
+const AXIAL: [f32; 3] = [-1.0, 1.0, -1.0];
 
 /// Two axes are parallel whose cosine is at least this.
 const PARALLEL: f32 = 0.999;
@@ -83,12 +83,12 @@ fn image_of_inputs(skeleton: &Skeleton) -> Image {
     };
     // Of places the root has none.
     let others: Vec<usize> = twins.iter().skip(1).map(|body| body - 1).collect();
-    vectors(&others, &PLACE);
-    vectors(&twins, &[PLACE, PLACE].concat());
-    vectors(&twins, &PLACE);
-    vectors(&twins, &TURN);
+    vectors(&others, &POLAR);
+    vectors(&twins, &[POLAR, POLAR].concat());
+    vectors(&twins, &POLAR);
+    vectors(&twins, &AXIAL);
     let at = image.len();
-    image.extend((0..TARGET_LEN).map(|i| (at + i, PLACE[i])));
+    image.extend((0..TARGET_LEN).map(|i| (at + i, POLAR[i])));
     image
 }
 
@@ -100,7 +100,7 @@ fn image_of_joints(skeleton: &Skeleton) -> Result<Image, String> {
     let image = |index: usize| {
         let joint = &joints[index];
         let twin = of_body(BodyId::new(twin(skeleton, joint.body.index()))).nth(place(index));
-        let [x, y, z] = TURN;
+        let [x, y, z] = AXIAL;
         let axis = joint.axis.normalize() * glam::Vec3::new(x, y, z);
         twin.map(|(of, twin)| (of, axis.dot(twin.axis.normalize())))
             .filter(|(_, cosine)| cosine.abs() > PARALLEL)
@@ -139,9 +139,9 @@ mod tests {
             {
                 let of = |v: Vec3, signs: [f32; 3]| if is_image { flip(v, signs) } else { v };
                 let own = both[state].body_mut(body);
-                own.position = of(position, PLACE);
-                own.linear_velocity = of(velocity, PLACE);
-                own.angular_velocity = of(turns, TURN);
+                own.position = of(position, POLAR);
+                own.linear_velocity = of(velocity, POLAR);
+                own.angular_velocity = of(turns, AXIAL);
                 own.rotation = match is_image {
                     true => Quat::from_xyzw(-rotation.x, rotation.y, -rotation.z, rotation.w),
                     false => rotation,
