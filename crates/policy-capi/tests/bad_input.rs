@@ -147,7 +147,7 @@ fn bad_commands_are_errors_and_nothing_happens() {
     let (pack, body, mut targets) = (pack(), Body::standing(), [7.0; JOINTS]);
     let mut controller = controller(&pack);
     let (index, number) = (PsStatus::BadIndex, PsStatus::BadNumber);
-    let terms = [PsBlendTerm { policy: 0, weights: [f32::NAN; 4] }; 9];
+    let terms = [PsBlendTerm { policy: 0, weights: [f32::NAN; 4] }; 17];
     let commands = [
         (PsCommand { goal_index: 2, ..walking() }, index, "expected the index of a path below 2, found 2"),
         (PsCommand { goal_index: -1, ..walking() }, index, "found -1"),
@@ -158,7 +158,11 @@ fn bad_commands_are_errors_and_nothing_happens() {
         (PsCommand { has_facing: 1, facing: [f32::NAN, 0.0], ..walking() }, number, "the way to face"),
         (PsCommand { has_skill: 1, ..walking() }, index, "skill"),
         (PsCommand { blend: terms.as_ptr(), blend_count: 1, ..walking() }, number, "blend weight"),
-        (PsCommand { blend: terms.as_ptr(), blend_count: 9, ..walking() }, PsStatus::WrongCount, "at most 8"),
+        (
+            PsCommand { blend: terms.as_ptr(), blend_count: 17, ..walking() },
+            PsStatus::WrongCount,
+            "at most 16",
+        ),
     ];
     for (command, status, part) in commands {
         failed(tick(&mut controller, &body, &command, &mut targets), status, part);

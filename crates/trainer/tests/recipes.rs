@@ -8,11 +8,12 @@ use std::sync::Arc;
 use clips::ClipFolder;
 use common::{project, small, write_clip};
 use physics_bridge::Model;
+use policy_core::training::ActionScaling;
 use policy_core::{Arithmetic, CharacterPack, MlpScratch};
 use trainer::checkpoint::Checkpoint;
 use trainer::env::Normalisers;
 use trainer::nn::{Network, Pass};
-use trainer::pack::{PackPlan, TrainedSkill, bind};
+use trainer::pack::{PackPlan, TrainedSkill, bind, mirrored};
 use trainer::recipe::Recipe;
 use trainer::run::{Existing, Run};
 use trainer::workspace::Workspace;
@@ -95,9 +96,14 @@ fn every_recipe_runs_and_binds_into_a_pack() {
     slim_checkpoints_are_enough_to_continue(&workspace, folder.path());
 
     let plan = PackPlan::load(&project().join("assets/recipes/pack/humanoid.toml")).unwrap();
+    let scaling = ActionScaling::from_skeleton(model.skeleton());
     for planned in &plan.policies {
-        let Some(skill) = &planned.skill else { continue };
-        let of_run = skills.iter().find(|trained| trained.skill == *skill).unwrap().clone();
+        let Some(skill) = planned.skill.as_ref().or(planned.mirror_of.as_ref()) else { continue };
+        let mut of_run = skills.iter().find(|trained| trained.skill == *skill).unwrap().clone();
+        if planned.mirror_of.is_some() {
+            let observation = &normalisers.observation;
+            of_run.actor = mirrored(&of_run.actor, model.skeleton(), observation, &scaling).unwrap();
+        }
         skills.push(TrainedSkill { skill: planned.name.clone(), ..of_run });
     }
     let bytes = bind(&plan, &skills, &normalisers, &model, None).unwrap().to_bytes();
