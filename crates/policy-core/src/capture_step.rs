@@ -6,17 +6,15 @@
 
 use glam::Vec2;
 
-use crate::balance::comes_to_rest;
 use crate::blend::{Blend, BlendTerm};
 use crate::fall::fall_height;
 use crate::graph::PolicyGraph;
 use crate::heading::Heading;
 use crate::mlp::MAX_LAYERS;
 use crate::path::GraphPosition;
-use crate::skeleton::Skeleton;
 use crate::state::CharacterState;
 use crate::strafe::strafing_share;
-use crate::variants::crossed;
+use crate::variants::Lasting;
 
 /// A body that would come to rest so far behind its ankles tips over, as a share of its height above them.
 const BEHIND: f32 = 0.1;
@@ -39,10 +37,8 @@ const LEAST_HEIGHT_SHARE: f32 = 0.7;
 /// What a capture step remembers from tick to tick.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct CaptureStep {
-    /// Share of the policy that strafes, in [0, 1].
-    pub(crate) share: f32,
-    /// How long the steps go on yet, seconds.
-    pub(crate) secs: f32,
+    /// How far the policy that strafes acts.
+    pub(crate) acts: Lasting,
     /// Which way they go, world, of unit length while the share is above 0.
     pub(crate) way: Vec2,
     /// Where the character faced when it tipped over, world, of unit length while the share is above 0.
@@ -50,11 +46,12 @@ pub(crate) struct CaptureStep {
 }
 
 impl CaptureStep {
-    /// What it is after a tick of `dt` seconds at a position on the graph, on the way to `target`.
+    /// What it is after a tick of `dt` seconds at a position on the graph, on the way to `target`; the body comes to rest as
+    /// [`comes_to_rest`](crate::balance::comes_to_rest) says.
     pub(crate) fn next(
         self,
         (graph, position): (&PolicyGraph, GraphPosition),
-        (skeleton, state): (&Skeleton, &CharacterState),
+        (state, comes_to_rest): (&CharacterState, Option<Vec2>),
         target: Option<Vec2>,
         dt: f32,
     ) -> Self {
@@ -66,16 +63,14 @@ impl CaptureStep {
         let is_ahead = target
             .and_then(|target| (target - root.position.truncate()).try_normalize())
             .is_none_or(|direction| heading.angle_off(direction) < MOST_RADIANS);
-        let tips = comes_to_rest(skeleton, state).filter(|at| is_ahead && at.x < -BEHIND);
+        let tips = comes_to_rest.filter(|at| is_ahead && at.x < -BEHIND);
         let way = tips.and_then(|at| heading.world_from_heading_2d(at).try_normalize());
-        let secs = if way.is_some() { SETTLES_SECS } else { (self.secs - dt).max(0.0) };
-        let share = crossed(self.share, if secs > 0.0 { 1.0 } else { 0.0 }, CROSS_SECS, dt);
-        match share > 0.0 {
+        let acts = self.acts.next(way.is_some(), SETTLES_SECS, CROSS_SECS, dt);
+        match acts.share > 0.0 {
             true => Self {
-                share,
-                secs,
+                acts,
                 way: way.unwrap_or(self.way),
-                facing: if self.share > 0.0 { self.facing } else { heading.direction() },
+                facing: if self.acts.share > 0.0 { self.facing } else { heading.direction() },
             },
             false => Self::default(),
         }
@@ -84,21 +79,22 @@ impl CaptureStep {
     /// Where to step, world, and which way to face meanwhile; `None` while there is no need.
     pub(crate) fn target(&self, state: &CharacterState) -> Option<(Vec2, Vec2)> {
         let target = state.root().position.truncate() + TARGET_METRES * self.way;
-        (self.share > 0.0).then_some((target, self.facing))
+        (self.acts.share > 0.0).then_some((target, self.facing))
     }
 
     /// A blend of gaits with a share given to the policy that strafes.
     pub(crate) fn with_steps(&self, graph: &PolicyGraph, gaits: Blend) -> Blend {
-        let Some(steps) = graph.strafing().filter(|_| self.share > 0.0) else { return gaits };
-        if self.share >= 1.0 {
+        let share = self.acts.share;
+        let Some(steps) = graph.strafing().filter(|_| share > 0.0) else { return gaits };
+        if share >= 1.0 {
             return Blend::single(steps.into());
         }
         let mut shared = Blend::default();
         for term in gaits.terms() {
-            let weights = term.weights.map(|weight| (1.0 - self.share) * weight);
+            let weights = term.weights.map(|weight| (1.0 - share) * weight);
             let _ = shared.push(BlendTerm { policy: term.policy, weights });
         }
-        let _ = shared.push(BlendTerm { policy: steps.into(), weights: [self.share; MAX_LAYERS] });
+        let _ = shared.push(BlendTerm { policy: steps.into(), weights: [share; MAX_LAYERS] });
         shared
     }
 }

@@ -202,8 +202,8 @@ impl ControllerState {
         let Urgency { to_move, to_rest, to_stand, at_rest, as_asked, at_pace, to_start, start_secs } =
             &self.urgency;
         let urgency = [to_move, to_rest, to_stand, at_rest, as_asked, at_pace, to_start, start_secs];
-        let CaptureStep { share, secs, way, facing } = self.capture_step;
-        let capture_step = [share, secs, way.x, way.y, facing.x, facing.y];
+        let CaptureStep { acts, way, facing } = self.capture_step;
+        let capture_step = [acts.share, acts.secs, way.x, way.y, facing.x, facing.y];
         let mut others = times
             .iter()
             .chain(&steering)
@@ -211,7 +211,7 @@ impl ControllerState {
             .chain([&self.unevenness])
             .chain(urgency)
             .chain(&capture_step)
-            .chain([&self.pushed_aside.share, &self.pushed_aside.secs]);
+            .chain([&self.pushed_aside.acts.share, &self.pushed_aside.acts.secs]);
         let finite = numbers.all(|n| n.is_finite()) && others.all(|n| n.is_finite());
         field("numbers", "finite numbers", finite)?;
         let progress = r.skill.map_or([0.0; 2], |s| [s.seconds, s.held_seconds]);

@@ -3,13 +3,12 @@
 //! A gait puts one foot before the other and has none beside the body. A policy that stands steps aside, and is free to. It acts alone,
 //! and at once: it need not be of the gait's family, so what lies between their parameters is no policy.
 
-use crate::balance::comes_to_rest;
+use glam::Vec2;
+
 use crate::graph::PolicyGraph;
 use crate::ids::NodeId;
 use crate::path::GraphPosition;
-use crate::skeleton::Skeleton;
-use crate::state::CharacterState;
-use crate::variants::crossed;
+use crate::variants::Lasting;
 
 /// A body that would come to rest so far beside its ankles tips over, as a share of its height above them.
 const ASIDE: f32 = 0.25;
@@ -26,21 +25,20 @@ const CROSS_SECS: [f32; 2] = [0.03, 0.1];
 /// What a catch remembers from tick to tick.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct PushedAside {
-    /// Share of the policy that stands, in [0, 1].
-    pub(crate) share: f32,
-    /// How long it stands yet, seconds.
-    pub(crate) secs: f32,
+    /// How far the policy that stands acts.
+    pub(crate) acts: Lasting,
     /// Whether the body tipped over to its left.
     pub(crate) left: bool,
 }
 
 impl PushedAside {
     /// What it is after a tick of `dt` seconds at a position on the graph. A gait that does not go at its pace yet, in a start or a turn,
-    /// leans by itself, and uneven ground is nothing that the policy that stands has learned.
+    /// leans by itself, and uneven ground is nothing that the policy that stands has learned. The body comes to rest as
+    /// [`comes_to_rest`](crate::balance::comes_to_rest) says.
     pub(crate) fn next(
         self,
         (graph, position): (&PolicyGraph, GraphPosition),
-        (skeleton, state): (&Skeleton, &CharacterState),
+        comes_to_rest: Option<Vec2>,
         (at_pace, unevenness): (f32, f32),
         dt: f32,
     ) -> Self {
@@ -48,20 +46,20 @@ impl PushedAside {
         if !(catches(position.from) && catches(position.to)) {
             return Self::default();
         }
-        let can_tip = (at_pace >= 1.0 || self.share > 0.0) && unevenness < MOST_UNEVENNESS;
-        let tips = comes_to_rest(skeleton, state).filter(|at| can_tip && at.y.abs() > ASIDE);
-        let secs = if tips.is_some() { STANDS_SECS } else { (self.secs - dt).max(0.0) };
-        let share = crossed(self.share, if secs > 0.0 { 1.0 } else { 0.0 }, CROSS_SECS, dt);
-        let left = match (self.share > 0.0, tips) {
-            (false, Some(at)) => at.y > 0.0,
+        let acts_already = self.acts.share > 0.0;
+        let can_tip = (at_pace >= 1.0 || acts_already) && unevenness < MOST_UNEVENNESS;
+        let tips = comes_to_rest.filter(|at| can_tip && at.y.abs() > ASIDE);
+        let acts = self.acts.next(tips.is_some(), STANDS_SECS, CROSS_SECS, dt);
+        let left = match tips {
+            Some(at) if !acts_already => at.y > 0.0,
             _ => self.left,
         };
-        if share > 0.0 { Self { share, secs, left } } else { Self::default() }
+        if acts.share > 0.0 { Self { acts, left } } else { Self::default() }
     }
 
     /// Whether the policy that stands acts, for the most part: it has no target.
     pub(crate) fn stands(&self) -> bool {
-        self.share > 0.5
+        self.acts.share > 0.5
     }
 
     /// Which of a pair of policies acts: the one for its left, or for its right.

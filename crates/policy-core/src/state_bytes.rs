@@ -61,10 +61,10 @@ impl ControllerState {
             self.urgency;
         w.floats(&[self.unevenness, to_move, to_rest, to_stand, at_rest, as_asked, at_pace]);
         w.floats(&[to_start, start_secs]);
-        let CaptureStep { share, secs, way, facing } = self.capture_step;
-        w.floats(&[share, secs, way.x, way.y, facing.x, facing.y]);
-        let PushedAside { share, secs, left } = self.pushed_aside;
-        w.floats(&[share, secs]);
+        let CaptureStep { acts, way, facing } = self.capture_step;
+        w.floats(&[acts.share, acts.secs, way.x, way.y, facing.x, facing.y]);
+        let PushedAside { acts, left } = self.pushed_aside;
+        w.floats(&[acts.share, acts.secs]);
         w.put([u8::from(left)]);
         debug_assert_eq!(w.at, w.out.len());
     }
@@ -117,11 +117,11 @@ impl ControllerState {
         (urgency.at_rest, urgency.as_asked, urgency.at_pace) = (r.float(), r.float(), r.float());
         (urgency.to_start, urgency.start_secs) = (r.float(), r.float());
         let steps = &mut self.capture_step;
-        (steps.share, steps.secs) = (r.float(), r.float());
+        (steps.acts.share, steps.acts.secs) = (r.float(), r.float());
         (steps.way.x, steps.way.y) = (r.float(), r.float());
         (steps.facing.x, steps.facing.y) = (r.float(), r.float());
         let aside = &mut self.pushed_aside;
-        (aside.share, aside.secs, aside.left) = (r.float(), r.float(), r.flag()?);
+        (aside.acts.share, aside.acts.secs, aside.left) = (r.float(), r.float(), r.flag()?);
         Ok(())
     }
 }

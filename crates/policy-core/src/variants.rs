@@ -20,6 +20,23 @@ pub(crate) fn crossed(before: f32, now: f32, [to_all, to_nothing]: [f32; 2], dt:
     now.clamp(before - dt / to_nothing, before + dt / to_all).clamp(0.0, 1.0)
 }
 
+/// What acts for a while after the tick that last called for it.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(crate) struct Lasting {
+    /// How far it acts, in [0, 1].
+    pub(crate) share: f32,
+    /// How long it goes on yet, seconds.
+    pub(crate) secs: f32,
+}
+
+impl Lasting {
+    /// What it is after a tick of `dt` seconds, where it lasts for `lasts` seconds and comes and goes within `cross` seconds.
+    pub(crate) fn next(self, is_called_for: bool, lasts: f32, cross: [f32; 2], dt: f32) -> Self {
+        let secs = if is_called_for { lasts } else { (self.secs - dt).max(0.0) };
+        Self { share: crossed(self.share, if secs > 0.0 { 1.0 } else { 0.0 }, cross, dt), secs }
+    }
+}
+
 /// How far the variants of a policy act, each in [0, 1].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Shares {
@@ -35,7 +52,7 @@ pub(crate) struct Shares {
 
 /// The blend with a share of each policy given to its variants, where it has them.
 pub(crate) fn with_variants(graph: &PolicyGraph, blend: Blend, shares: Shares) -> Blend {
-    if shares.rough_ground <= 0.0 && shares.agile == Urgency::default() && shares.aside.share <= 0.0 {
+    if shares.rough_ground <= 0.0 && shares.agile == Urgency::default() && shares.aside.acts.share <= 0.0 {
         return blend;
     }
     let mut shared = Blend::default();
@@ -45,7 +62,7 @@ pub(crate) fn with_variants(graph: &PolicyGraph, blend: Blend, shares: Shares) -
             node.and_then(of).map(|variant| (PolicyId::from(variant), share))
         };
         let caught = node.and_then(|node| node.pushed_aside);
-        let caught = caught.map(|both| (PolicyId::from(shares.aside.of(both)), shares.aside.share));
+        let caught = caught.map(|both| (PolicyId::from(shares.aside.of(both)), shares.aside.acts.share));
         let left = 1.0 - caught.map_or(0.0, |(_, share)| share);
         let rough = variant(|node| node.rough_ground, left * shares.rough_ground);
         let left = left - rough.map_or(0.0, |(_, share)| share);

@@ -16,7 +16,7 @@ mod plan;
 mod rollouts;
 
 pub use distil::{Agreement, DISTILLED_HIDDEN, distil};
-pub use mirror::mirrored;
+use mirror::mirrored;
 pub use plan::{PackPlan, PlannedPolicy};
 
 use crate::checkpoint::{ACTOR, Checkpoint, CheckpointError, DISCRIMINATOR, EMA};
@@ -55,6 +55,14 @@ pub enum BindError {
         role: &'static str,
         /// What is wrong with it.
         source: MlpError,
+    },
+    /// A body has no mirror image.
+    #[error("mirror image {skill}: {message}")]
+    Mirror {
+        /// Name of the image.
+        skill: String,
+        /// What was expected and found.
+        message: String,
     },
     /// The parts don't fit together.
     #[error(transparent)]
@@ -106,6 +114,24 @@ impl TrainedSkill {
     /// When its checkpoint is missing or wrong.
     pub fn load(skill: &str, checkpoint: &Path) -> Result<Self, CheckpointError> {
         Self::from_checkpoint(skill, &Checkpoint::load(checkpoint)?, checkpoint)
+    }
+
+    /// The mirror image of the skill's policy, under a name of its own; see [`mirrored`].
+    ///
+    /// # Errors
+    /// When the body of `model` has no mirror image.
+    pub fn mirror_image(
+        &self,
+        name: &str,
+        normalisers: &Normalisers,
+        model: &Model,
+    ) -> Result<Self, BindError> {
+        let skeleton = model.skeleton();
+        let scaling = ActionScaling::from_skeleton(skeleton);
+        let actor = mirrored(&self.actor, skeleton, &normalisers.observation, &scaling)
+            .map_err(|message| BindError::Mirror { skill: name.into(), message })?;
+        let origin = format!("mirror image of {}", self.origin);
+        Ok(Self { skill: name.into(), actor, origin, ..self.clone() })
     }
 
     /// True when a checkpoint is of a run that trained this skill together with others.

@@ -8,12 +8,11 @@ use std::sync::Arc;
 use clips::ClipFolder;
 use common::{project, small, write_clip};
 use physics_bridge::Model;
-use policy_core::training::ActionScaling;
 use policy_core::{Arithmetic, CharacterPack, MlpScratch};
 use trainer::checkpoint::Checkpoint;
 use trainer::env::Normalisers;
 use trainer::nn::{Network, Pass};
-use trainer::pack::{PackPlan, TrainedSkill, bind, mirrored};
+use trainer::pack::{PackPlan, PlannedPolicy, TrainedSkill, bind};
 use trainer::recipe::Recipe;
 use trainer::run::{Existing, Run};
 use trainer::workspace::Workspace;
@@ -96,15 +95,14 @@ fn every_recipe_runs_and_binds_into_a_pack() {
     slim_checkpoints_are_enough_to_continue(&workspace, folder.path());
 
     let plan = PackPlan::load(&project().join("assets/recipes/pack/humanoid.toml")).unwrap();
-    let scaling = ActionScaling::from_skeleton(model.skeleton());
     for planned in &plan.policies {
-        let Some(skill) = planned.skill.as_ref().or(planned.mirror_of.as_ref()) else { continue };
-        let mut of_run = skills.iter().find(|trained| trained.skill == *skill).unwrap().clone();
-        if planned.mirror_of.is_some() {
-            let observation = &normalisers.observation;
-            of_run.actor = mirrored(&of_run.actor, model.skeleton(), observation, &scaling).unwrap();
-        }
-        skills.push(TrainedSkill { skill: planned.name.clone(), ..of_run });
+        let PlannedPolicy { name, skill, mirror_of, .. } = planned;
+        let Some(other) = skill.as_ref().or(mirror_of.as_ref()) else { continue };
+        let other = skills.iter().find(|trained| trained.skill == *other).unwrap();
+        skills.push(match mirror_of {
+            Some(_) => other.mirror_image(name, &normalisers, &model).unwrap(),
+            None => TrainedSkill { skill: name.clone(), ..other.clone() },
+        });
     }
     let bytes = bind(&plan, &skills, &normalisers, &model, None).unwrap().to_bytes();
     let pack = Arc::new(CharacterPack::from_bytes(&bytes).unwrap());

@@ -3,6 +3,7 @@
 use glam::Vec2;
 
 use super::Controller;
+use crate::balance::comes_to_rest;
 use crate::capture_step::CaptureStep;
 use crate::command::Command;
 use crate::fall::{Heights, step_heights};
@@ -94,14 +95,14 @@ impl Controller {
         // Skills, falls and blends chosen by hand are none of its business.
         let acts =
             self.config.capture_steps && report.skill.is_none() && !report.fallen && command.blend.is_none();
-        let (graph, skeleton) = (self.pack.graph(), self.pack.skeleton());
-        let place = (graph, report.position);
+        let place = (self.pack.graph(), report.position);
         (self.state.capture_step, self.state.pushed_aside) = match acts {
             true => {
+                let at = comes_to_rest(self.pack.skeleton(), state);
                 let calm = (self.state.urgency.at_pace, self.state.unevenness);
                 (
-                    self.state.capture_step.next(place, (skeleton, state), command.target, dt),
-                    self.state.pushed_aside.next(place, (skeleton, state), calm, dt),
+                    self.state.capture_step.next(place, (state, at), command.target, dt),
+                    self.state.pushed_aside.next(place, at, calm, dt),
                 )
             }
             false => (CaptureStep::default(), PushedAside::default()),

@@ -4,17 +4,16 @@ use std::path::PathBuf;
 use std::sync::Arc;
 use std::time::Instant;
 
-use anyhow::{Context, Result, anyhow, ensure};
+use anyhow::{Context, Result, ensure};
 use clap::Args;
 use evaluation::{measure_get_up, measure_skill};
 use files::{read_bounded, write_atomically};
 use physics::Engine;
 use physics_bridge::Model;
-use policy_core::training::ActionScaling;
 use policy_core::{CharacterPack, SkillId};
 use trainer::checkpoint::CheckpointError;
 use trainer::env::Normalisers;
-use trainer::pack::{Agreement, PackPlan, PlannedPolicy, TrainedSkill, bind, distil, mirrored};
+use trainer::pack::{Agreement, PackPlan, PlannedPolicy, TrainedSkill, bind, distil};
 use trainer::workspace::CheckpointFile;
 
 use super::output::say;
@@ -61,14 +60,16 @@ pub(crate) fn run(
     let mut plan = PackPlan::load(&a.plan)?;
     let joint = plan.joint.as_ref().map(|run| newest(run)).transpose()?.flatten();
     let together = |skill: &str| joint.as_ref().filter(|(loaded, _)| TrainedSkill::is_in(skill, loaded));
-    let mut trained = Vec::new();
+    let mut trained: Vec<TrainedSkill> = Vec::new();
     for PlannedPolicy { name, from, skill, mirror_of, .. } in &plan.policies {
         if let Some(original) = mirror_of {
-            trained.extend(mirror_image(model, normalisers, &trained, [name, original])?);
+            let image = trained.iter().find(|t| t.skill == *original);
+            let image = image.map(|t| t.mirror_image(name, normalisers, model)).transpose()?;
             ensure!(
-                a.partial || trained.iter().any(|t| t.skill == *name),
-                "{name}: expected the mirror image of a policy further up in the plan, found {original}"
+                a.partial || image.is_some(),
+                "{name}: expected the mirror image of a policy further up in the plan, found {original:?}"
             );
+            trained.extend(image);
             continue;
         }
         let skill = skill.as_ref().unwrap_or(name);
@@ -123,25 +124,6 @@ pub(crate) fn run(
         ms = ms.min(1e3 * start.elapsed().as_secs_f32());
     }
     say(format_args!("wrote {}, {} bytes, loaded in {ms:.1} ms", a.out.display(), bytes.len()))
-}
-
-/// The mirror image of a trained skill, under a name of its own; `None` where that skill is not there.
-fn mirror_image(
-    model: &Model,
-    normalisers: &Normalisers,
-    trained: &[TrainedSkill],
-    [name, original]: [&str; 2],
-) -> Result<Option<TrainedSkill>> {
-    let Some(original) = trained.iter().find(|t| t.skill == original) else { return Ok(None) };
-    let skeleton = model.skeleton();
-    let scaling = ActionScaling::from_skeleton(skeleton);
-    let actor = mirrored(&original.actor, skeleton, &normalisers.observation, &scaling);
-    Ok(Some(TrainedSkill {
-        skill: name.to_owned(),
-        actor: actor.map_err(|why| anyhow!("{name}: {why}"))?,
-        origin: format!("mirror image of {}", original.origin),
-        ..original.clone()
-    }))
 }
 
 /// Prints how the skills of a pack end.

@@ -2,7 +2,7 @@
 //!
 //! In the mirror y changes its sign, and a body on the left is its twin on the right. So each input of the image is one input of the policy,
 //! up to its sign, and so is each output. The hidden layer stays as it is; only the order and the signs of the numbers on both sides of it
-//! change, so the image is exact. It is of no family with the policy: half-way between both lies no good policy.
+//! change, so the image is exact, but for inputs that are clipped. It is of no family with the policy: half-way between both lies no good policy.
 
 use clips::twin_name;
 use policy_core::training::{ActionScaling, Normaliser, TARGET_LEN};
