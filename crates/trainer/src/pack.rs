@@ -116,7 +116,7 @@ impl TrainedSkill {
         Self::from_checkpoint(skill, &Checkpoint::load(checkpoint)?, checkpoint)
     }
 
-    /// The mirror image of the skill's policy, under a name of its own; see [`mirrored`].
+    /// The mirror image of the skill's policy, under a name of its own: what the policy does to the right, it does to the left.
     ///
     /// # Errors
     /// When the body of `model` has no mirror image.
