@@ -33,6 +33,8 @@ pub fn pack(model: &Model, mjcf: &str) -> CharacterPack {
         steady: None,
         resting: None,
         starting: None,
+        stopping: None,
+        turning: None,
         pushed_aside: None,
         origin: "made up".into(),
     };

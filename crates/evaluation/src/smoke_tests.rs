@@ -61,6 +61,8 @@ fn pack(falls: bool) -> Arc<CharacterPack> {
         steady: None,
         resting: None,
         starting: None,
+        stopping: None,
+        turning: None,
         pushed_aside: None,
         origin: "made up".into(),
     };

@@ -354,9 +354,10 @@ typedef struct PsConfig {
   float give_way_stop_secs;
   // Not 0: blend gaits with their variants for rough ground where the ground is uneven.
   int32_t footing;
-  // Not 0: blend gaits with their starting variants while the character sets off from a stand, with their agile variants
-  // while it does not move yet as it is asked to, with their steady variants once it has for a while, and with their resting
-  // variants where it is to go nowhere.
+  // Not 0: blend gaits with their starting variants while the character sets off from a stand, with their turning variants
+  // while it turns, with their stopping variants while it comes to a stand, with their agile variants while it does not move
+  // yet as it is asked to, with their steady variants once it has for a while, and with their resting variants where it is to
+  // go nowhere.
   int32_t agility;
   // Not 0: step back with the pack's first policy that strafes when the body tips over backwards, and stand for a moment
   // when a push tips a gait over aside.

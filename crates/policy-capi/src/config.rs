@@ -80,9 +80,10 @@ pub struct PsConfig {
     pub give_way_stop_secs: f32,
     /// Not 0: blend gaits with their variants for rough ground where the ground is uneven.
     pub footing: i32,
-    /// Not 0: blend gaits with their starting variants while the character sets off from a stand, with their agile variants
-    /// while it does not move yet as it is asked to, with their steady variants once it has for a while, and with their resting
-    /// variants where it is to go nowhere.
+    /// Not 0: blend gaits with their starting variants while the character sets off from a stand, with their turning variants
+    /// while it turns, with their stopping variants while it comes to a stand, with their agile variants while it does not move
+    /// yet as it is asked to, with their steady variants once it has for a while, and with their resting variants where it is to
+    /// go nowhere.
     pub agility: i32,
     /// Not 0: step back with the pack's first policy that strafes when the body tips over backwards, and stand for a moment
     /// when a push tips a gait over aside.

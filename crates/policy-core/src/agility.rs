@@ -1,6 +1,7 @@
 //! Agility: while a character does not move yet as it is asked to, a gait is blended with its agile variant; once it has
 //! done as it is asked to for a while, with its steady variant; where it has no target and stays in a gait that moves, with its resting
-//! variant; while it sets off from a stand, with its starting variant.
+//! variant; while it sets off from a stand, with its starting variant; while it comes to a stand, with its stopping
+//! variant; while it turns, with its turning variant.
 //!
 //! A gait that turns, starts or stops quickly looks hurried while it walks straight ahead. So the variant acts in the moments in which
 //! it is needed, and not at all once the character goes as it is asked to; without other variants the gait then acts with the bits that it
@@ -13,8 +14,10 @@ use crate::footing::steepest;
 use crate::graph::PolicyGraph;
 use crate::heading::Heading;
 use crate::path::GraphPosition;
+use crate::starts_and_stops::{next_start, next_stop};
 use crate::state::CharacterState;
-use crate::variants::{crossed, within};
+use crate::turning::Turn;
+use crate::variants::{Lasting, Variant, crossed, within};
 
 /// Velocity errors between which the variant comes in, relative to the speed of the gait.
 const OFF_VELOCITY: [f32; 2] = [0.3, 0.6];
@@ -37,16 +40,6 @@ const STEADY_SECS: [f32; 2] = [1.6, 0.06];
 /// Time from a gait that moves to its resting variant, and back, seconds.
 const REST_SECS: [f32; 2] = [0.1, 0.1];
 
-/// Time from a gait to its starting variant, and back, seconds. The first is no longer than a tick: a start is over soon.
-const START_CROSS_SECS: [f32; 2] = [0.03, 0.2];
-
-/// A start takes at most so long, seconds.
-const START_SECS: f32 = 1.0;
-
-/// It has stood for so long before a start, in the measure of [`Urgency::at_rest`]: 0.5 s. Out of a stop, or right after a skill, nothing has
-/// learned to start.
-const STOOD: f32 = 0.3;
-
 /// A character goes at its pace after this time, seconds.
 const PACE_SECS: f32 = 0.3;
 
@@ -56,6 +49,28 @@ const COMES_IN: [f32; 2] = [0.35, 1.0];
 /// Rises and drops below the feet between which the steady variants leave off, metres: they stand and go straight on level ground alone. Feet
 /// that stand apart on a slope of 5 degrees differ by the second.
 const OFF_LEVEL: [f32; 2] = [0.002, 0.008];
+
+/// Where a character is on the graph, and where it is going.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Place<'a> {
+    pub(crate) graph: &'a PolicyGraph,
+    pub(crate) position: GraphPosition,
+    pub(crate) goal: GraphPosition,
+}
+
+impl Place<'_> {
+    /// Whether all gaits that act here have a variant.
+    pub(crate) fn all_have(&self, variant: Variant) -> bool {
+        let GraphPosition { from, to, .. } = self.position;
+        let acting = self.position.as_node().map_or([from, to], |node| [node; 2]);
+        acting.iter().all(|node| variant(self.graph.node(*node)).is_some())
+    }
+
+    /// On an edge that is only crossed.
+    pub(crate) fn crosses(&self) -> bool {
+        self.graph.edge_at(self.position).is_some_and(|edge| edge.transit)
+    }
+}
 
 /// How far a character is from what it is asked to do, and how long it has done it, each in [0, 1].
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -73,10 +88,13 @@ pub(crate) struct Urgency {
     /// How long it has gone no faster than its place on the graph asks for, 1 from 0.3 s on; kept while it stays there, and forgotten once it
     /// leaves. From then on a faster one has been pushed.
     pub(crate) at_pace: f32,
-    /// 1 while it sets off from a stand: for the starting variants.
-    pub(crate) to_start: f32,
-    /// How long a start may take yet, seconds: all of its time while it has stood still for a while, none once it is fast enough.
-    pub(crate) start_secs: f32,
+    /// While it sets off from a stand: for the starting variants. Its seconds are all that a start may take while it has stood still for a
+    /// while, and none once it is fast enough.
+    pub(crate) start: Lasting,
+    /// While it comes to a stand: for the stopping variants. Its seconds are all that a stop may take while it goes.
+    pub(crate) stop: Lasting,
+    /// While it turns: for the turning variants.
+    pub(crate) turn: Turn,
 }
 
 /// Share of the steady variants after so long.
@@ -94,19 +112,19 @@ impl Urgency {
     /// down, before it goes anywhere.
     pub(crate) fn next(
         self,
-        (graph, position, goal): (&PolicyGraph, GraphPosition, GraphPosition),
+        place: Place<'_>,
         state: &CharacterState,
         target: Option<Vec2>,
         dt: f32,
     ) -> Self {
-        let crosses = graph.edge_at(position).is_some_and(|edge| edge.transit);
+        let Place { graph, position, goal } = place;
         let node = position.as_node();
         let arrived = position.is_same_place(goal);
         let stands = node.is_some_and(|node| graph.node(node).stands());
         let off_level = within(steepest(state), OFF_LEVEL);
         let steady = |can_be: bool, off: f32| if arrived && can_be { 1.0 - off.max(off_level) } else { 0.0 };
         let now = match (target, moving_mps(graph, position)) {
-            _ if crosses => Self::default(),
+            _ if place.crosses() => Self::default(),
             (None, _) => {
                 let moves = off_velocity(state.root().linear_velocity.truncate(), 0.0);
                 let stays = moving_mps(graph, goal).is_some();
@@ -133,8 +151,8 @@ impl Urgency {
             }
             (Some(_), None) => Self::default(),
         };
-        let start_secs = self.start_secs_left((graph, position, goal), state, target, dt);
-        let starts = target.is_some() && start_secs > 0.0 && !crosses;
+        let start = next_start(self.start, self.at_rest, place, state, target, dt);
+        let turn = self.turn.next(start.share > 0.0, place, state, target, dt);
         let follow = |before: f32, now: f32, secs: [f32; 2]| {
             crossed(before, if now.is_finite() { now } else { 0.0 }, secs, dt)
         };
@@ -144,30 +162,12 @@ impl Urgency {
             to_stand: follow(self.to_stand, now.to_stand, CROSS_SECS),
             at_rest: follow(self.at_rest, now.at_rest, STEADY_SECS),
             as_asked: follow(self.as_asked, now.as_asked, STEADY_SECS),
-            at_pace: now.at_pace,
-            to_start: follow(self.to_start, if starts { 1.0 } else { 0.0 }, START_CROSS_SECS),
-            start_secs,
+            // A body that turns leans: no push has tipped it over.
+            at_pace: if turn.share > 0.0 { 0.0 } else { now.at_pace },
+            start,
+            stop: next_stop(self.stop, place, state, target, dt),
+            turn,
         }
-    }
-
-    /// How long a start may take yet, seconds: none on the way to a gait that is slower than the starting variant.
-    fn start_secs_left(
-        self,
-        (graph, position, goal): (&PolicyGraph, GraphPosition, GraphPosition),
-        state: &CharacterState,
-        target: Option<Vec2>,
-        dt: f32,
-    ) -> f32 {
-        let root = state.root();
-        let velocity = root.linear_velocity.truncate();
-        let left = (self.start_secs - dt).max(0.0);
-        let Some(target) = target else { return if self.at_rest >= STOOD { START_SECS } else { left } };
-        let variant = graph.node(position.nearest_node()).starting;
-        let speed = variant.and_then(|variant| graph.node(variant).speed_mps);
-        let along = velocity.dot((target - root.position.truncate()).normalize_or_zero());
-        let goes_on =
-            |speed: f32| along < speed && moving_mps(graph, goal).is_some_and(|asked| asked >= speed);
-        if speed.is_some_and(goes_on) { left } else { 0.0 }
     }
 }
 
@@ -180,7 +180,7 @@ fn mostly_stands(graph: &PolicyGraph, position: GraphPosition) -> bool {
 
 /// Speed that a position on the graph asks for, metres per second, where its gaits have one and it does not stand: between two gaits that move,
 /// that of the slower one, which is all that its variant has learned.
-fn moving_mps(graph: &PolicyGraph, position: GraphPosition) -> Option<f32> {
+pub(crate) fn moving_mps(graph: &PolicyGraph, position: GraphPosition) -> Option<f32> {
     let speed = |node| graph.node(node).speed_mps;
     let asked = match position.as_node() {
         Some(node) => speed(node)?,

@@ -5,7 +5,6 @@ use alloc::sync::Arc;
 use alloc::vec::Vec;
 
 use crate::action::ActionScaling;
-use crate::agility::Urgency;
 use crate::blend::Blend;
 use crate::command::Command;
 use crate::controller_state::{ControllerState, StateError};
@@ -231,17 +230,7 @@ impl Controller {
         let command = self.settling(state, &command);
         let (command, goal) = self.bound_for(state, &command);
         self.travel(goal, heights, dt);
-        self.state.urgency = match self.config.agility {
-            true => {
-                let place = (self.pack.graph(), self.state.report.position, self.state.report.goal);
-                self.state.urgency.next(place, state, command.target, dt)
-            }
-            false => Urgency::default(),
-        };
-        // What held it up is still there when it goes on: that is no start.
-        if self.state.give_way.stop_secs > 0.0 {
-            self.state.urgency.start_secs = 0.0;
-        }
+        self.follow_urgency(state, command.target, dt);
         self.keep_balance(state, &command, dt);
         self.choose_blend(state, &command);
         self.observe(state, &command, dt);

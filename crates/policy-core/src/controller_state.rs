@@ -199,9 +199,11 @@ impl ControllerState {
         ];
         let steering = [self.steering.velocity.x, self.steering.velocity.y, self.steering.trim];
         let give_way = [self.give_way.speed, self.give_way.pace, self.give_way.stop_secs];
-        let Urgency { to_move, to_rest, to_stand, at_rest, as_asked, at_pace, to_start, start_secs } =
+        let Urgency { to_move, to_rest, to_stand, at_rest, as_asked, at_pace, start, stop, turn } =
             &self.urgency;
-        let urgency = [to_move, to_rest, to_stand, at_rest, as_asked, at_pace, to_start, start_secs];
+        let urgency = [to_move, to_rest, to_stand, at_rest, as_asked, at_pace];
+        let lasting =
+            [&start.share, &start.secs, &stop.share, &stop.secs, &turn.share, &turn.way.x, &turn.way.y];
         let CaptureStep { acts, way, facing } = self.capture_step;
         let capture_step = [acts.share, acts.secs, way.x, way.y, facing.x, facing.y];
         let mut others = times
@@ -210,6 +212,7 @@ impl ControllerState {
             .chain(&give_way)
             .chain([&self.unevenness])
             .chain(urgency)
+            .chain(lasting)
             .chain(&capture_step)
             .chain([&self.pushed_aside.acts.share, &self.pushed_aside.acts.secs]);
         let finite = numbers.all(|n| n.is_finite()) && others.all(|n| n.is_finite());

@@ -190,6 +190,12 @@ pub struct PolicyEntry {
     /// Name of its starting variant; see [`Node::starting`](crate::training::Node::starting).
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub starting: Option<String>,
+    /// Name of its stopping variant; see [`Node::stopping`](crate::training::Node::stopping).
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub stopping: Option<String>,
+    /// Name of its turning variant; see [`Node::turning`](crate::training::Node::turning).
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub turning: Option<String>,
     /// Names of the policies that catch a push to its left, and to its right; see
     /// [`Node::pushed_aside`](crate::training::Node::pushed_aside).
     #[serde(default, skip_serializing_if = "Option::is_none")]

@@ -35,6 +35,10 @@ pub struct Node {
     pub resting: Option<NodeId>,
     /// Variant of the policy that acts while the character sets off from a stand, until it is as fast as that variant's speed.
     pub starting: Option<NodeId>,
+    /// Variant of the policy that acts from the moment in which a character that goes is to stand, until it stands.
+    pub stopping: Option<NodeId>,
+    /// Variant of the policy that acts while a character that goes turns: from the moment in which its target lies far aside until it goes there.
+    pub turning: Option<NodeId>,
     /// Standing policies that act while a push tips the character over to its left, and to its right.
     pub pushed_aside: Option<[NodeId; 2]>,
 }
@@ -46,11 +50,12 @@ impl Node {
         self.speed_mps == Some(0.0)
     }
 
-    /// Its variants, where it has them: for rough ground, agile, steady, resting, starting, pushed to its left, pushed to its right.
+    /// Its variants, where it has them: for rough ground, agile, steady, resting, starting, stopping, turning, pushed to its left, pushed to its right.
     #[must_use]
-    pub fn variants(&self) -> [Option<NodeId>; 7] {
+    pub fn variants(&self) -> [Option<NodeId>; 9] {
         let [left, right] = self.pushed_aside.map_or([None; 2], |both| both.map(Some));
-        [self.rough_ground, self.agile, self.steady, self.resting, self.starting, left, right]
+        let Self { rough_ground, agile, steady, resting, starting, stopping, turning, .. } = *self;
+        [rough_ground, agile, steady, resting, starting, stopping, turning, left, right]
     }
 }
 

@@ -100,12 +100,14 @@ mod route;
 mod scorer;
 mod skeleton;
 mod skill;
+mod starts_and_stops;
 mod state;
 mod state_bytes;
 mod steering;
 mod strafe;
 pub mod training;
 mod turn_assist;
+mod turning;
 mod variants;
 
 pub use glam;

@@ -73,6 +73,8 @@ impl CharacterPack {
                 steady: variant(&p.steady)?,
                 resting: variant(&p.resting)?,
                 starting: variant(&p.starting)?,
+                stopping: variant(&p.stopping)?,
+                turning: variant(&p.turning)?,
                 pushed_aside: match &p.pushed_aside {
                     Some([left, right]) => {
                         Some([find_node(field(), left, &names)?, find_node(field(), right, &names)?])

@@ -18,7 +18,7 @@ use crate::skill::{Refusal, SkillEnd, SkillProgress};
 use crate::steering::side_of;
 
 /// First four bytes: `PSS` and the version.
-const VERSION: u32 = u32::from_le_bytes(*b"PSS\x0a");
+const VERSION: u32 = u32::from_le_bytes(*b"PSS\x0b");
 
 const POSITION_LEN: usize = 2 + 2 + 4;
 const BLEND_LEN: usize = 1 + MAX_BLEND_TERMS * (2 + 4 * MAX_LAYERS);
@@ -26,7 +26,7 @@ const SKILL_LEN: usize = 3;
 const PROGRESS_LEN: usize = SKILL_LEN + 4 + 4 + 1 + 4;
 const REPORT_LEN: usize =
     2 * POSITION_LEN + BLEND_LEN + 1 + 8 + PROGRESS_LEN + 2 * SKILL_LEN + 2 * (SKILL_LEN + 1) + 3;
-const FIXED_LEN: usize = 4 + REPORT_LEN + 8 + 2 + BLEND_LEN + 4 + SKILL_LEN + 12 + 12 + 12 + 36 + 24 + 9;
+const FIXED_LEN: usize = 4 + REPORT_LEN + 8 + 2 + BLEND_LEN + 4 + SKILL_LEN + 12 + 12 + 12 + 57 + 24 + 9;
 
 impl ControllerState {
     /// Number of bytes; one for all states of a pack.
@@ -57,10 +57,12 @@ impl ControllerState {
         let steering = self.steering;
         w.floats(&[steering.velocity.x, steering.velocity.y, steering.trim]);
         w.floats(&[self.give_way.speed, self.give_way.pace, self.give_way.stop_secs]);
-        let Urgency { to_move, to_rest, to_stand, at_rest, as_asked, at_pace, to_start, start_secs } =
+        let Urgency { to_move, to_rest, to_stand, at_rest, as_asked, at_pace, start, stop, turn } =
             self.urgency;
         w.floats(&[self.unevenness, to_move, to_rest, to_stand, at_rest, as_asked, at_pace]);
-        w.floats(&[to_start, start_secs]);
+        w.floats(&[start.share, start.secs, stop.share, stop.secs]);
+        w.floats(&[turn.share, turn.way.x, turn.way.y]);
+        w.put([u8::from(turn.turns)]);
         let CaptureStep { acts, way, facing } = self.capture_step;
         w.floats(&[acts.share, acts.secs, way.x, way.y, facing.x, facing.y]);
         let PushedAside { acts, left } = self.pushed_aside;
@@ -115,7 +117,10 @@ impl ControllerState {
         let urgency = &mut self.urgency;
         (urgency.to_move, urgency.to_rest, urgency.to_stand) = (r.float(), r.float(), r.float());
         (urgency.at_rest, urgency.as_asked, urgency.at_pace) = (r.float(), r.float(), r.float());
-        (urgency.to_start, urgency.start_secs) = (r.float(), r.float());
+        (urgency.start.share, urgency.start.secs) = (r.float(), r.float());
+        (urgency.stop.share, urgency.stop.secs) = (r.float(), r.float());
+        let turn = &mut urgency.turn;
+        (turn.share, turn.way.x, turn.way.y, turn.turns) = (r.float(), r.float(), r.float(), r.flag()?);
         let steps = &mut self.capture_step;
         (steps.acts.share, steps.acts.secs) = (r.float(), r.float());
         (steps.way.x, steps.way.y) = (r.float(), r.float());

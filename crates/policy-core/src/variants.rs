@@ -1,12 +1,13 @@
-//! Variants: a policy gives shares of its weight to others that were trained on from it: one for rough ground, one that turns, starts
-//! or stops quickly, one that stands still or goes straight, one that rests in a gait that moves, one that sets off from a stand.
+//! Variants: a policy gives shares of its weight to others that were trained on from it: one for rough ground, one that sets off from a stand,
+//! one that comes to a stand, one that turns, one that does all of these and catches pushes, one that rests in a gait that moves, one that stands
+//! still or goes straight.
 //!
 //! All are of one family, so the straight lines between their parameters are good policies too. Policies that catch a push aside are not:
 //! they take all at once.
 
 use crate::agility::{Urgency, steady_share};
 use crate::blend::{Blend, BlendTerm};
-use crate::graph::PolicyGraph;
+use crate::graph::{Node, PolicyGraph};
 use crate::ids::{NodeId, PolicyId};
 use crate::pushed_aside::PushedAside;
 
@@ -44,11 +45,14 @@ pub(crate) struct Shares {
     pub(crate) aside: PushedAside,
     /// Share of the variant for rough ground in what that leaves.
     pub(crate) rough_ground: f32,
-    /// Share of the starting variant in what the one for rough ground leaves, then of the agile one: of gaits that move, and of those that
-    /// stand. The resting variant has a share of what they leave, and the steady one of what is left then. A gait without a resting variant
-    /// rests by its agile one.
+    /// Share of the starting variant in what the one for rough ground leaves, then of the stopping and of the turning one, then of the agile one:
+    /// of gaits that move, and of those that stand. The resting variant has a share of what they leave, and the steady one of what is left
+    /// then. A gait without a resting variant rests by its agile one.
     pub(crate) agile: Urgency,
 }
+
+/// One of the variants of a node, where it has it.
+pub(crate) type Variant = fn(&Node) -> Option<NodeId>;
 
 /// The blend with a share of each policy given to its variants, where it has them.
 pub(crate) fn with_variants(graph: &PolicyGraph, blend: Blend, shares: Shares) -> Blend {
@@ -58,33 +62,36 @@ pub(crate) fn with_variants(graph: &PolicyGraph, blend: Blend, shares: Shares) -
     let mut shared = Blend::default();
     for term in blend.terms() {
         let node = graph.nodes().get(term.policy.index());
-        let variant = |of: fn(&crate::graph::Node) -> Option<NodeId>, share: f32| {
-            node.and_then(of).map(|variant| (PolicyId::from(variant), share))
-        };
         let caught = node.and_then(|node| node.pushed_aside);
         let caught = caught.map(|both| (PolicyId::from(shares.aside.of(both)), shares.aside.acts.share));
-        let left = 1.0 - caught.map_or(0.0, |(_, share)| share);
-        let rough = variant(|node| node.rough_ground, left * shares.rough_ground);
-        let left = left - rough.map_or(0.0, |(_, share)| share);
-        let starting = variant(|node| node.starting, left * shares.agile.to_start);
-        let left = left - starting.map_or(0.0, |(_, share)| share);
-        let stands = node.is_some_and(crate::graph::Node::stands);
-        let Urgency { to_move, to_rest, to_stand, .. } = shares.agile;
+        let stands = node.is_some_and(Node::stands);
         let rests = node.is_some_and(|node| node.resting.is_some());
+        let Urgency { to_move, to_rest, to_stand, at_rest, as_asked, start, stop, turn, .. } = shares.agile;
         let urgency = match (stands, rests) {
             (true, _) => to_stand,
             (false, true) => to_move,
             (false, false) => to_move.max(to_rest),
         };
-        let agile = variant(|node| node.agile, left * urgency);
-        let left = left - agile.map_or(0.0, |(_, share)| share);
-        let resting = variant(|node| node.resting, left * to_rest);
-        let left = left - resting.map_or(0.0, |(_, share)| share);
-        let steadily = if stands { shares.agile.at_rest } else { shares.agile.as_asked };
-        let steady = variant(|node| node.steady, left * steady_share(steadily));
-        let own = left - steady.map_or(0.0, |(_, share)| share);
-        let parts = [Some((term.policy, own)), caught, rough, starting, agile, resting, steady];
-        for (policy, share) in parts.into_iter().flatten().filter(|(_, share)| *share > 0.0) {
+        let steadily = steady_share(if stands { at_rest } else { as_asked });
+        // Each has a share of what those before it leave.
+        let takers: [(Variant, f32); 7] = [
+            (|node| node.rough_ground, shares.rough_ground),
+            (|node| node.starting, start.share),
+            (|node| node.stopping, stop.share),
+            (|node| node.turning, turn.share),
+            (|node| node.agile, urgency),
+            (|node| node.resting, to_rest),
+            (|node| node.steady, steadily),
+        ];
+        let mut left = 1.0 - caught.map_or(0.0, |(_, share)| share);
+        let variants = takers.map(|(variant, share)| {
+            let variant = node.and_then(variant)?;
+            let taken = left * share;
+            left -= taken;
+            Some((PolicyId::from(variant), taken))
+        });
+        let parts = [Some((term.policy, left)), caught].into_iter().chain(variants);
+        for (policy, share) in parts.flatten().filter(|(_, share)| *share > 0.0) {
             let weights = term.weights.map(|weight| share * weight);
             if shared.add(BlendTerm { policy, weights }).is_err() {
                 return blend;

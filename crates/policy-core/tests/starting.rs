@@ -4,10 +4,10 @@ mod common;
 
 use std::sync::Arc;
 
-use common::{acted, hand_over, policy, standing, weight};
+use common::{acted, hand_over, moving, policy, weight};
 use glam::{Vec2, Vec3};
 use policy_core::{
-    CharacterPack, CharacterState, Command, Controller, ControllerConfig, GiveWay, Goal, PathId, Skeleton,
+    CharacterPack, CharacterState, Command, Controller, ControllerConfig, GiveWay, Goal, PathId,
 };
 
 const DT: f32 = 1.0 / 30.0;
@@ -40,20 +40,9 @@ fn stands() -> Controller {
     stood(30)
 }
 
-fn moving(speed: f32) -> CharacterState {
-    let mut state = standing();
-    for body in &mut state.bodies {
-        body.linear_velocity = Vec3::X * speed;
-    }
-    for foot in Skeleton::humanoid().feet() {
-        state.body_mut(*foot).position.z = 0.07;
-    }
-    state
-}
-
 /// One tick at a speed ahead; asked to go on to a coordinate of the first path, or to stand. Returns the share of the starting variant.
 fn tick(controller: &mut Controller, speed: f32, coordinate: Option<f32>) -> f32 {
-    share(controller, &moving(speed), PathId::new(0), coordinate)
+    share(controller, &moving(Vec3::X * speed), PathId::new(0), coordinate)
 }
 
 fn share(controller: &mut Controller, state: &CharacterState, path: PathId, coordinate: Option<f32>) -> f32 {
@@ -92,7 +81,7 @@ fn a_start_takes_a_second_at_most() {
 fn slow_gaits_light_sticks_and_characters_that_move_have_none() {
     assert_eq!(tick(&mut stands(), 0.0, Some(0.4)), 0.0, "a light stick");
     let mut down = stands();
-    assert_eq!(share(&mut down, &moving(0.0), PathId::new(1), Some(2.0)), 0.0, "down to a crouch");
+    assert_eq!(share(&mut down, &moving(Vec3::X * 0.0), PathId::new(1), Some(2.0)), 0.0, "down to a crouch");
     let mut controller = stood(0);
     (0..60).for_each(|_| assert_eq!(tick(&mut controller, 0.6, None), 0.0, "it does not stand still"));
     assert_eq!(tick(&mut controller, 0.6, Some(1.0)), 0.0);

@@ -213,6 +213,8 @@ fn policies(plan: &PackPlan, trained: &[TrainedSkill]) -> Result<(Vec<Mlp>, Vec<
             steady: planned.steady.clone(),
             resting: planned.resting.clone(),
             starting: planned.starting.clone(),
+            stopping: planned.stopping.clone(),
+            turning: planned.turning.clone(),
             pushed_aside: planned.pushed_aside.clone(),
             origin: skill.origin.clone(),
         });

@@ -111,6 +111,8 @@ fn policy_entry(name: &str, sizes: &[usize]) -> PolicyEntry {
         steady: None,
         resting: None,
         starting: None,
+        stopping: None,
+        turning: None,
         pushed_aside: None,
         origin: "made up".into(),
     }

@@ -36,9 +36,10 @@ pub struct ControllerConfig {
     pub give_way: Option<GiveWay>,
     /// Blend gaits with their variants for rough ground where the ground is uneven, the default; where the pack has none, nothing changes.
     pub footing: bool,
-    /// Blend gaits with their starting variants while the character sets off from a stand, with their agile variants while it does not move
-    /// yet as it is asked to, with their steady variants once it has for a while, and with their resting variants where it is to go nowhere, the
-    /// default; where the pack has none, nothing changes.
+    /// Blend gaits with their starting variants while the character sets off from a stand, with their turning variants while it turns, with their
+    /// stopping variants while it comes to a stand, with their agile variants while it does not move yet as it is asked to, with their steady
+    /// variants once it has for a while, and with their resting variants where it is to go nowhere, the default; where the pack has none,
+    /// nothing changes.
     pub agility: bool,
     /// Step back with the pack's first policy that strafes when the body tips over backwards, and stand for a moment when a push tips a gait
     /// over aside, the default; where the pack has no policies for it, nothing changes.

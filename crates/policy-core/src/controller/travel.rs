@@ -3,6 +3,7 @@
 use glam::Vec2;
 
 use super::Controller;
+use crate::agility::{Place, Urgency};
 use crate::balance::comes_to_rest;
 use crate::capture_step::CaptureStep;
 use crate::command::Command;
@@ -11,9 +12,12 @@ use crate::give_way::GiveWayState;
 use crate::ids::NodeId;
 use crate::path::GraphPosition;
 use crate::pushed_aside::PushedAside;
+use crate::report::TickReport;
 use crate::state::CharacterState;
 use crate::steering::SteeringState;
 use crate::strafe::waits_before_leaving;
+use crate::turning::Turn;
+use crate::variants::Lasting;
 
 /// Seconds that a character has to stand up by itself out of a low gait.
 const ASSIST_SECONDS: f32 = 0.1;
@@ -73,10 +77,11 @@ impl Controller {
         }
     }
 
-    /// The command, or to stand for a moment. Skills and falls are none of its business.
+    /// The command, or to stand for a moment. Skills and falls are none of its business, nor is the speed that a turn takes.
     pub(super) fn giving_way(&mut self, state: &CharacterState, command: &Command, dt: f32) -> Command {
         let report = &self.state.report;
-        let acts = report.skill.is_none() && report.pending_skill.is_none() && !report.fallen;
+        let turns = self.state.urgency.turn.turns;
+        let acts = report.skill.is_none() && report.pending_skill.is_none() && !report.fallen && !turns;
         let memory = &mut self.state.give_way;
         match self.config.give_way.filter(|_| acts) {
             Some(give_way) => {
@@ -86,6 +91,25 @@ impl Controller {
                 *memory = GiveWayState::default();
                 *command
             }
+        }
+    }
+
+    /// How far the character is from what it is asked to do, after the way on the graph.
+    pub(super) fn follow_urgency(&mut self, state: &CharacterState, target: Option<Vec2>, dt: f32) {
+        let TickReport { position, goal, skill, .. } = self.state.report;
+        let place = Place { graph: self.pack.graph(), position, goal };
+        let urgency = &mut self.state.urgency;
+        *urgency = match self.config.agility {
+            true => urgency.next(place, state, target, dt),
+            false => Urgency::default(),
+        };
+        // Out of a skill nothing has learned to turn at once.
+        if skill.is_some() || self.state.settle_secs > 0.0 {
+            urgency.turn = Turn::default();
+        }
+        // What held it up stops it, and is still there when it goes on: that is no stop, and no start.
+        if self.state.give_way.stop_secs > 0.0 {
+            (urgency.start.secs, urgency.stop) = (0.0, Lasting::default());
         }
     }
 

@@ -1,6 +1,7 @@
 //! Made-up policies and a made-up pack, so that no test needs trained ones.
 #![allow(dead_code, reason = "each test file uses its part")]
 
+use glam::Vec3;
 use policy_core::format::{
     DISCRIMINATOR_LAYOUT, DiscriminatorEntry, EdgeEntry, EndEntry, Manifest, OBSERVATION_LAYOUT, PACK_FORMAT,
     PACK_VERSION, PathEntry, PolicyEntry, SkeletonEntry, SkillEntry, Storage,
@@ -42,6 +43,18 @@ pub fn policy(name: &str) -> usize {
 /// Policies that acted in the last tick and their weights in the first layer.
 pub fn acted(controller: &Controller) -> Vec<(usize, f32)> {
     controller.report().blend.terms().iter().map(|term| (term.policy.index(), term.weights[0])).collect()
+}
+
+/// A body that stands on its feet and moves as a whole, metres per second.
+pub fn moving(velocity: Vec3) -> CharacterState {
+    let mut state = standing();
+    for body in &mut state.bodies {
+        body.linear_velocity = velocity;
+    }
+    for foot in Skeleton::humanoid().feet() {
+        state.body_mut(*foot).position.z = 0.07;
+    }
+    state
 }
 
 /// Weight of a policy among those.
@@ -99,6 +112,8 @@ pub fn manifest() -> Manifest {
         steady: None,
         resting: None,
         starting: None,
+        stopping: None,
+        turning: None,
         pushed_aside: None,
         origin: "made up".into(),
     };

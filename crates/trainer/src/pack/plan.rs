@@ -79,6 +79,12 @@ pub struct PlannedPolicy {
     /// Name of its starting variant.
     #[serde(default)]
     pub starting: Option<String>,
+    /// Name of its stopping variant.
+    #[serde(default)]
+    pub stopping: Option<String>,
+    /// Name of its turning variant.
+    #[serde(default)]
+    pub turning: Option<String>,
     /// Names of the policies that catch a push to its left, and to its right.
     #[serde(default)]
     pub pushed_aside: Option<[String; 2]>,
@@ -102,8 +108,9 @@ impl PackPlan {
     pub fn only(mut self, trained: impl Fn(&str) -> bool) -> Self {
         self.policies.retain(|p| trained(&p.name));
         for policy in &mut self.policies {
-            let PlannedPolicy { rough_ground, agile, steady, resting, starting, .. } = policy;
-            for variant in [rough_ground, agile, steady, resting, starting] {
+            let PlannedPolicy { rough_ground, agile, steady, resting, starting, stopping, turning, .. } =
+                policy;
+            for variant in [rough_ground, agile, steady, resting, starting, stopping, turning] {
                 *variant = variant.take().filter(|name| trained(name));
             }
             let both = policy.pushed_aside.take();

@@ -139,6 +139,8 @@ pub fn quadruped() -> CharacterPack {
         steady: None,
         resting: None,
         starting: None,
+        stopping: None,
+        turning: None,
         pushed_aside: None,
         origin: "made up".into(),
     };

@@ -82,6 +82,8 @@ pub(super) fn policy_graph(
         steady: None,
         resting: None,
         starting: None,
+        stopping: None,
+        turning: None,
         pushed_aside: None,
     };
     let policies = vec![policy; nodes.len()];

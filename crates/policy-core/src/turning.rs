@@ -1,0 +1,86 @@
+//! Turns: from the moment in which the target of a character that goes lies far aside until it goes there, its gaits give all of their weight to
+//! their turning variant.
+//!
+//! Agile variants come in by how far the velocity is off, and each brakes and turns in its own way. One policy that has learned to go about out of
+//! any gait is quicker, and leaves the rest to them.
+
+use glam::Vec2;
+
+use crate::agility::{Place, moving_mps};
+use crate::heading::Heading;
+use crate::state::CharacterState;
+use crate::variants::crossed;
+
+/// Angle off the heading at which a target begins a turn, radians.
+const BEGINS_RADIANS: f32 = 0.7;
+
+/// The way to the target has changed by at least this then, radians. Where it has not, a push has turned the body, and that is for others to
+/// catch.
+const CHANGED_RADIANS: f32 = 0.35;
+
+/// Angles off heading and course below which it ends, radians.
+const FACES_RADIANS: f32 = 0.35;
+const GOES_RADIANS: f32 = 0.2;
+
+/// A character that is slower than this does not go; it sets off, metres per second.
+const GOES_MPS: f32 = 0.4;
+
+/// Below this speed a course is none, metres per second.
+const COURSE_MPS: f32 = 0.2;
+
+/// Time from a gait to its turning variant, and back, seconds. The first is no longer than a tick.
+const CROSS_SECS: [f32; 2] = [0.03, 0.4];
+
+/// What a turn remembers from tick to tick.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(crate) struct Turn {
+    /// Whether it has begun and has not ended.
+    pub(crate) turns: bool,
+    /// How far the turning variant acts, in [0, 1].
+    pub(crate) share: f32,
+    /// The way to its target when it last faced it, world, of unit length; zero where it has not yet, since the last skill.
+    pub(crate) way: Vec2,
+}
+
+impl Turn {
+    /// What it is after a tick of `dt` seconds. In a start, and on an edge that is only crossed, there is none.
+    pub(crate) fn next(
+        self,
+        starts: bool,
+        place: Place<'_>,
+        state: &CharacterState,
+        target: Option<Vec2>,
+        dt: f32,
+    ) -> Self {
+        let can_turn = place.all_have(|node| node.turning)
+            && moving_mps(place.graph, place.goal).is_some()
+            && !starts
+            && !place.crosses();
+        let way = target.and_then(|target| (target - state.root().position.truncate()).try_normalize());
+        let turns = way.filter(|_| can_turn).is_some_and(|way| self.goes_about(state, way));
+        let heading = Heading::from_rotation(state.root().rotation);
+        let faced = way.filter(|way| heading.angle_off(*way) < BEGINS_RADIANS);
+        Self {
+            turns,
+            share: crossed(self.share, if turns { 1.0 } else { 0.0 }, CROSS_SECS, dt),
+            way: faced.unwrap_or(self.way),
+        }
+    }
+
+    /// Whether it is to turn to go this way, or still turns.
+    fn goes_about(self, state: &CharacterState, way: Vec2) -> bool {
+        let root = state.root();
+        let velocity = root.linear_velocity.truncate();
+        let speed = libm::sqrtf(velocity.length_squared());
+        let off_heading = Heading::from_rotation(root.rotation).angle_off(way);
+        let off_course = if speed > COURSE_MPS { libm::fabsf(velocity.angle_to(way)) } else { off_heading };
+        match self.turns {
+            true => off_heading > FACES_RADIANS || off_course > GOES_RADIANS,
+            false => {
+                let has_gone = self.way != Vec2::ZERO && speed > GOES_MPS;
+                let has_changed = libm::fabsf(self.way.angle_to(way)) > CHANGED_RADIANS;
+                has_gone && has_changed && off_heading > BEGINS_RADIANS
+            }
+        }
+    }
+}

@@ -1,0 +1,134 @@
+//! Turns: from the moment in which the target of a character that goes lies far aside until it goes there, its gaits give all of their weight to
+//! their turning variant.
+
+mod common;
+
+use std::sync::Arc;
+
+use common::{acted, hand_over, moving, policy, weight};
+use glam::{Quat, Vec2, Vec3};
+use policy_core::{
+    CharacterPack, CharacterState, Command, Controller, ControllerConfig, Goal, PathId, Skeleton,
+};
+
+const DT: f32 = 1.0 / 30.0;
+
+/// The turning variant in the made-up pack.
+const TURNS: &str = "roll";
+
+/// It stands at `idle`, walks at 1 m/s, jogs at 2 m/s and crouches at 0.4 m/s; a crouch has no turning variant.
+fn pack() -> Arc<CharacterPack> {
+    let mut manifest = common::manifest();
+    for (index, speed) in [0.0, 1.0, 2.0].into_iter().enumerate() {
+        manifest.policies[index].speed_mps = Some(speed);
+        manifest.policies[index].turning = Some(TURNS.into());
+    }
+    manifest.policies[policy("crouch")].speed_mps = Some(0.4);
+    Arc::new(CharacterPack::from_parts(manifest, common::tensors(0.0)).unwrap())
+}
+
+/// Where the body faces and goes, degrees to the left of x, and how fast it goes there, metres per second.
+#[derive(Clone, Copy)]
+struct Moves {
+    faces: f32,
+    goes: f32,
+    speed: f32,
+}
+
+const AHEAD: Moves = Moves { faces: 0.0, goes: 0.0, speed: 1.0 };
+
+fn state(moves: Moves) -> CharacterState {
+    let turned = |degrees: f32| Quat::from_rotation_z(degrees.to_radians());
+    let mut state = moving(turned(moves.goes) * Vec3::X * moves.speed);
+    state.bodies[0].rotation = turned(moves.faces);
+    state
+}
+
+/// One tick of a body that moves so and is to go to a side, degrees. Returns the share of the turning variant.
+fn share(controller: &mut Controller, moves: Moves, path: usize, coordinate: f32, way: Option<f32>) -> f32 {
+    let goal = Goal::Path { path: PathId::new(path), coordinate };
+    let target = way.map(|degrees| Vec2::from_angle(degrees.to_radians()) * 10.0);
+    controller.tick(&state(moves), &Command { goal, target, ..Command::default() }, DT);
+    let acted = acted(controller);
+    assert!((acted.iter().map(|term| term.1).sum::<f32>() - 1.0).abs() < 1e-6, "{acted:?}");
+    weight(&acted, policy(TURNS))
+}
+
+/// A controller of a character that has gone ahead for two seconds.
+fn goes(path: usize, coordinate: f32, speed: f32) -> Controller {
+    let config = ControllerConfig { give_way: None, turn_assist: None, ..ControllerConfig::default() };
+    let mut controller = Controller::with_config(pack(), config);
+    let moves = Moves { speed, ..AHEAD };
+    (0..60).for_each(|_| assert_eq!(share(&mut controller, moves, path, coordinate, Some(0.0)), 0.0));
+    controller
+}
+
+#[test]
+fn it_takes_all_in_the_tick_in_which_the_target_lies_far_aside_until_the_character_goes_there() {
+    for (coordinate, speed) in [(1.0, 1.0), (2.0, 2.0), (0.5, 0.5)] {
+        let mut controller = goes(0, coordinate, speed);
+        let mut at =
+            |faces, goes| share(&mut controller, Moves { faces, goes, speed }, 0, coordinate, Some(90.0));
+        for (faces, goes) in [(0.0, 0.0), (50.0, 20.0), (60.0, 70.0), (85.0, 70.0), (60.0, 90.0)] {
+            assert_eq!(at(faces, goes), 1.0, "it faces {faces} and goes {goes} degrees at {speed} m/s");
+        }
+        let shares: Vec<f32> = (0..13).map(|_| at(75.0, 82.0)).collect();
+        assert!((shares[0] - (1.0 - DT / 0.4)).abs() < 1e-5 && shares[12] < 1e-6, "0.4 s back: {shares:?}");
+        assert_eq!(at(60.0, 60.0), 0.0, "30 degrees off are no turn");
+    }
+}
+
+#[test]
+fn slow_characters_small_angles_and_low_gaits_have_none() {
+    assert_eq!(share(&mut goes(0, 1.0, 1.0), AHEAD, 0, 1.0, Some(35.0)), 0.0, "the target is nearly ahead");
+    assert_eq!(share(&mut goes(0, 1.0, 1.0), AHEAD, 0, 1.0, Some(45.0)), 1.0);
+    let mut pushed = goes(0, 1.0, 1.0);
+    for faces in [0.0, 30.0, 60.0, 90.0] {
+        let turned = Moves { faces, goes: 90.0, speed: 1.0 };
+        assert_eq!(share(&mut pushed, turned, 0, 1.0, Some(0.0)), 0.0, "a push has turned it");
+    }
+    assert_eq!(share(&mut pushed, AHEAD, 0, 1.0, Some(90.0)), 1.0);
+    assert_eq!(share(&mut goes(0, 1.0, 0.3), Moves { speed: 0.3, ..AHEAD }, 0, 1.0, Some(90.0)), 0.0);
+    assert_eq!(share(&mut goes(0, 1.0, 1.0), AHEAD, 0, 0.0, None), 0.0, "told to stand, it stops");
+    let mut low = goes(1, 2.0, 0.5);
+    assert_eq!(share(&mut low, AHEAD, 1, 2.0, Some(90.0)), 0.0, "a crouch");
+    (0..3).for_each(|_| assert_eq!(share(&mut low, AHEAD, 1, 1.0, Some(90.0)), 0.0, "out of a crouch"));
+}
+
+#[test]
+fn a_saved_state_goes_on_with_its_turn() {
+    let mut controller = goes(0, 1.0, 1.0);
+    share(&mut controller, AHEAD, 0, 1.0, Some(120.0));
+    let mut other = goes(0, 2.0, 2.0);
+    hand_over(&controller, &mut other);
+    for faces in [20.0, 60.0, 95.0, 110.0, 118.0, 118.0] {
+        let moves = Moves { faces, goes: faces, speed: 0.7 };
+        let shares = [&mut controller, &mut other].map(|c| share(c, moves, 0, 1.0, Some(120.0)));
+        assert!(shares[0] == shares[1] && shares[0] > 0.0);
+        assert_eq!(controller.report(), other.report());
+    }
+}
+
+#[test]
+fn what_a_turn_takes_of_the_speed_is_nothing_that_holds_the_character_up() {
+    let goal = Goal::Path { path: PathId::new(0), coordinate: 1.0 };
+    let mut controller = Controller::with_config(
+        pack(),
+        ControllerConfig { turn_assist: None, ..ControllerConfig::default() },
+    );
+    let mut tick = |moves: Moves, degrees: f32| {
+        let target = Some(Vec2::from_angle(degrees.to_radians()) * 10.0);
+        controller.tick(&state(moves), &Command { goal, target, ..Command::default() }, DT);
+        controller.report().goal.as_node().map(|node| node.index())
+    };
+    for _ in 0..60 {
+        assert_eq!(tick(AHEAD, 0.0), Some(policy("walk")));
+    }
+    // It faces its target while it still goes aside, then goes there slowly.
+    for faces in [30.0, 60.0, 90.0, 110.0, 110.0, 110.0, 110.0, 110.0] {
+        assert_eq!(tick(Moves { faces, goes: 70.0, speed: 0.8 }, 135.0), Some(policy("walk")), "at {faces}");
+    }
+    for _ in 0..30 {
+        assert_eq!(tick(Moves { faces: 135.0, goes: 130.0, speed: 0.4 }, 135.0), Some(policy("walk")));
+    }
+}
