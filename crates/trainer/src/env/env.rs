@@ -81,6 +81,8 @@ pub struct Env {
     /// Starts in play.
     pub(super) played: PlayedStarts,
     pub(super) exploration: Exploration,
+    /// Where it faced when the episode began, world, of unit length.
+    pub(super) faced_first: Vec2,
     /// Ticks of the episode in which it stood.
     pub(super) stood_ticks: u32,
     /// True when actions arrive one tick late in this episode.
@@ -124,6 +126,7 @@ impl Env {
             pre_failure: PreFailureStates::default(),
             played: PlayedStarts::new(),
             exploration: Exploration::default(),
+            faced_first: Vec2::X,
             stood_ticks: 0,
             delayed: false,
             targets: [targets.clone(), targets],
@@ -221,13 +224,17 @@ impl Env {
     }
 
     /// Reward terms of a tick, without tracking.
-    fn reward(&self, context: &EnvContext<'_>, velocity: Vec2) -> RewardTerms {
+    pub(super) fn reward(&self, context: &EnvContext<'_>, velocity: Vec2) -> RewardTerms {
         let (config, graph, position) = (&context.config.reward, context.graph, self.command.position);
         let prompt_mps = if config.prompt_start { self.command.prompt_mps(graph) } else { 0.0 };
         let pace = Pace {
             speed_mps: self.command.speed_mps(graph, self.root_position()).max(prompt_mps),
             speed_scale_mps: graph.speed_scale_mps(position),
-            facing: self.command.facing().map(|facing| (facing, graph.strafe(position).0)),
+            facing: match self.command.facing() {
+                Some(facing) => Some((facing, graph.strafe(position).0)),
+                None if self.command.stop => Some((self.faced_first, config.kept_facing_share)),
+                None => None,
+            },
         };
         let velocity = paid_velocity(config, context.skeleton, &self.state, velocity);
         let height = (config.height_share, graph.root_metres(position));

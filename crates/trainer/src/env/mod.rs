@@ -34,7 +34,7 @@ pub(crate) use meetings::{MET, WALK};
 pub use normalisers::Normalisers;
 pub use randomisation::RandomisationConfig;
 pub(crate) use reset::PLAYED;
-pub use reset::{HandOver, HandOverConfig, InPlayConfig, ResetConfig};
+pub use reset::{HandOver, HandOverConfig, InPlayConfig, OutOf, ResetConfig};
 pub use reward::{
     Pace, RewardConfig, RewardTerms, Task, foot_slip_mps, paid_velocity, standing_reward, target_reward,
 };

@@ -19,9 +19,9 @@ mod in_play;
 mod pre_failure;
 
 pub use self::hand_over::HandOver;
-pub use self::in_play::InPlayConfig;
 pub(crate) use self::in_play::PLAYED;
 pub(super) use self::in_play::PlayedStarts;
+pub use self::in_play::{InPlayConfig, OutOf};
 pub(super) use self::pre_failure::PreFailureStates;
 
 /// Where episodes start.
@@ -88,6 +88,7 @@ impl Env {
     /// ages all episodes of a population without falls would end together.
     pub fn reset(&mut self, context: &EnvContext<'_>, first: bool) {
         self.start(context, first);
+        self.faced_first = self.heading().direction();
         if let Some(company) = &mut self.company {
             company.begin(&self.character, context.config.meetings.pause_secs, &mut self.rng);
         }

@@ -76,3 +76,30 @@ fn a_timed_skill_sees_the_second_of_its_clip_in_every_start() {
     assert!((18..=32).contains(&early), "half from elsewhere begin with the clip: {early} of 40");
     assert!(starts.iter().any(|share| *share > 0.7), "others start anywhere in it: {starts:?}");
 }
+
+#[test]
+fn a_character_that_is_to_stand_can_be_paid_for_facing_where_it_faced() {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../assets/humanoid.xml");
+    let model = Model::load(path).unwrap();
+    let clip = still(30);
+    let normalisers = Normalisers::from_clips(std::slice::from_ref(&clip), &model).unwrap();
+    let clips = Demonstrations::from_clips(&[(clip, 1.0, false)], &model, &normalisers.frame).unwrap();
+    let paid = |kept_facing_share, stop_share, turned: f32| {
+        let mut config = EnvironmentConfig::default();
+        (config.reset.standing_share, config.command.stop_share) = (1.0, stop_share);
+        (config.command.stick_share, config.reward.kept_facing_share) = (1.0, kept_facing_share);
+        let setting = Setting::alone("idle", (model.clone(), normalisers.clone()), config);
+        let demonstrations = [&clips];
+        let context = setting.context(&demonstrations);
+        let mut env = Env::new(&setting.model, &context, Rng::new(7, 0));
+        env.reset(&context, false);
+        env.command.target = env.root_position();
+        let root = &mut env.state.bodies[0];
+        root.rotation = Quat::from_rotation_z(turned) * root.rotation;
+        env.reward(&context, glam::Vec2::ZERO).task
+    };
+    assert!((paid(1.0, 1.0, 0.0) - paid(0.0, 1.0, 0.0)).abs() < 1e-6, "it faces where it faced");
+    assert!(paid(1.0, 1.0, 1.0) < paid(1.0, 1.0, 0.5) && paid(1.0, 1.0, 0.5) < paid(1.0, 1.0, 0.0) - 0.02);
+    assert_eq!(paid(0.0, 1.0, 1.0), paid(0.0, 1.0, 0.0), "without a share it may turn");
+    assert_eq!(paid(1.0, 0.0, 1.0), paid(1.0, 0.0, 0.0), "and a character that is to go turns to its target");
+}

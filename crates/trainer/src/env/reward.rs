@@ -42,6 +42,9 @@ pub struct RewardConfig {
     pub linear_speed_share: f32,
     /// Share of the facing reward that only a character that nearly faces its target gets.
     pub strict_facing_share: f32,
+    /// Share of the facing reward of a character that is to stand that is for facing where it faced when the episode began. A quick stop
+    /// otherwise turns it about.
+    pub kept_facing_share: f32,
     /// How much of the reward for speed a character loses that faces away from its target. A low gait otherwise creeps aside
     /// and backwards rather than turn.
     pub facing_factor: f32,
@@ -74,6 +77,7 @@ impl Default for RewardConfig {
             head_speed_share: 0.0,
             linear_speed_share: 0.0,
             strict_facing_share: 0.0,
+            kept_facing_share: 0.0,
             facing_factor: 0.0,
             height_share: 0.0,
             tracking_weight: 0.0,

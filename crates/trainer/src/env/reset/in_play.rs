@@ -30,10 +30,12 @@ pub(crate) const PLAYED: &[&str] = &[
     "jog_steady",
     "run_steady",
     "walk_start",
+    "walk_turn",
+    "idle_stop",
     "roll",
 ];
 
-/// Of so many starts one each is out of these nodes.
+/// Nodes for [`OutOf::Anything`]; the first one stands.
 const OUT_OF: [&str; 14] = [
     "idle",
     "idle",
@@ -50,6 +52,9 @@ const OUT_OF: [&str; 14] = [
     "strafe",
     "strafe",
 ];
+
+/// Nodes for [`OutOf::Stride`].
+const STRIDES: [&str; 5] = ["walk", "walk", "jog", "jog", "run"];
 
 /// The skill that may have ended just before a start.
 const ROLL: &str = "roll";
@@ -75,6 +80,12 @@ const REST_SECS: f32 = 3.0;
 /// Longest time from letting go of the stick until the policy that learns takes over, seconds: a game blends it in.
 const LET_GO_SECS: f32 = 0.3;
 
+/// The same for a variant that stops: it takes over at once.
+const STOPS_SECS: f32 = 0.07;
+
+/// Shortest time on the way of a character that is to stop, seconds: so long a run takes to begin.
+const STRIDE_SECS: f32 = 1.2;
+
 /// Speed of a character that stands, metres per second.
 const STANDS_MPS: f32 = 0.3;
 
@@ -97,9 +108,33 @@ pub struct InPlayConfig {
     /// variant of a standing gait starts up to 0.3 s after the stick is released, the variant of a moving gait from standing or mid-gait.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub maximum_speed_mps: Option<f32>,
-    /// Out of a stand alone, for a variant that sets off.
-    #[serde(default, skip_serializing_if = "core::ops::Not::not")]
-    pub from_stand: bool,
+    /// Out of what it starts.
+    #[serde(default)]
+    pub out_of: OutOf,
+}
+
+/// What a character does before it starts.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum OutOf {
+    /// Any gait but a crawl, with turns, halts and rolls.
+    #[default]
+    Anything,
+    /// It stands, for a variant that sets off.
+    Stand,
+    /// It walks, jogs or runs, for a variant that turns, or that stops: that one starts as soon as the stick is released.
+    Stride,
+}
+
+impl OutOf {
+    /// Of so many starts one each is out of these nodes.
+    fn nodes(self) -> &'static [&'static str] {
+        match self {
+            Self::Anything => &OUT_OF,
+            Self::Stand => &OUT_OF[..1],
+            Self::Stride => &STRIDES,
+        }
+    }
 }
 
 /// Starts that were played and have not failed, to return to.
@@ -146,20 +181,25 @@ impl Env {
         let graph = pack.graph();
         let stand = graph.node_named(OUT_OF[0]).unwrap_or_default();
         controller.place_at(GraphPosition::node(stand));
-        let out_of = OUT_OF[if config.from_stand { 0 } else { self.rng.index(OUT_OF.len()) }];
-        let out_of = graph.node_named(out_of).unwrap_or(stand);
-        let way_secs = if out_of == stand { 0.0 } else { self.rng.range(0.3, WAY_SECS) };
+        let strides = config.out_of == OutOf::Stride;
+        let nodes = config.out_of.nodes();
+        let out_of = graph.node_named(nodes[self.rng.index(nodes.len())]).unwrap_or(stand);
+        let shortest = if strides { STRIDE_SECS } else { 0.3 };
+        let way_secs = if out_of == stand { 0.0 } else { self.rng.range(shortest, WAY_SECS) };
         let goes = way_secs > 0.0 && self.rng.chance(0.5);
         // Once it is as slow as that, and on its way to a stand.
         let (rest_secs, below_mps) = match config.maximum_speed_mps {
             Some(most) if goes => (0.0, Some(most)),
             Some(most) => (self.rng.range(0.0, REST_SECS), Some(most)),
-            None if context.config.command.speed_mps == 0.0 => (self.rng.range(0.0, LET_GO_SECS), None),
-            None if goes => (0.0, None),
+            None if context.config.command.speed_mps == 0.0 => {
+                (self.rng.range(0.0, if strides { STOPS_SECS } else { LET_GO_SECS }), None)
+            }
+            None if goes || strides => (0.0, None),
             None => (self.rng.range(0.5, REST_SECS), Some(STANDS_MPS)),
         };
         let rolls = |skill: &SkillId| pack.skills()[skill.index()].starts_from(out_of);
-        let mut roll = pack.skill_named(ROLL).filter(rolls).filter(|_| self.rng.chance(ROLL_SHARE));
+        let mut roll =
+            pack.skill_named(ROLL).filter(rolls).filter(|_| !strides && self.rng.chance(ROLL_SHARE));
         let (mut settled_at, mut turns_at) = (0.0, 0.0);
         let mut facing = self.heading().direction();
         let (mut direction, mut halts) = (facing, false);
@@ -180,7 +220,7 @@ impl Env {
             }
             if secs >= turns_at {
                 direction = facing.rotate(Vec2::from_angle(self.rng.angle()));
-                halts = self.rng.chance(HALT_SHARE);
+                halts = !strides && self.rng.chance(HALT_SHARE);
                 turns_at = secs + self.rng.range(DIRECTION_SECS[0], DIRECTION_SECS[1]);
             }
             facing = facing.rotate(Vec2::from_angle(looks_round * DT_SECS));

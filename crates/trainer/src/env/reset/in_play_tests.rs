@@ -8,7 +8,11 @@ use super::*;
 
 /// Speeds at the starts of 16 tries of a skill, and how many of them track a clip.
 fn starts(speed_mps: f32, maximum_speed_mps: Option<f32>, tracking_weight: f32) -> (Vec<f32>, usize) {
-    starts_of(speed_mps, InPlayConfig { share: 1.0, maximum_speed_mps, from_stand: false }, tracking_weight)
+    starts_of(
+        speed_mps,
+        InPlayConfig { share: 1.0, maximum_speed_mps, out_of: OutOf::Anything },
+        tracking_weight,
+    )
 }
 
 fn starts_of(speed_mps: f32, in_play: InPlayConfig, tracking_weight: f32) -> (Vec<f32>, usize) {
@@ -53,7 +57,17 @@ fn a_variant_that_stands_starts_where_the_stick_is_let_go_and_one_that_moves_any
 
 #[test]
 fn a_variant_that_sets_off_starts_out_of_a_stand_alone() {
-    let in_play = InPlayConfig { share: 1.0, maximum_speed_mps: None, from_stand: true };
+    let in_play = InPlayConfig { share: 1.0, maximum_speed_mps: None, out_of: OutOf::Stand };
     let (speeds, _) = starts_of(1.2, in_play, 0.0);
     assert!(speeds.len() >= 12 && speeds.iter().all(|speed| *speed < STANDS_MPS), "{speeds:?}");
+}
+
+#[test]
+fn variants_that_stop_or_turn_start_in_the_middle_of_a_stride() {
+    for speed_mps in [0.0, 1.5] {
+        let in_play = InPlayConfig { share: 1.0, maximum_speed_mps: None, out_of: OutOf::Stride };
+        let (speeds, _) = starts_of(speed_mps, in_play, 0.0);
+        assert!(speeds.len() >= 12 && speeds.iter().all(|speed| *speed > 0.4), "{speeds:?}");
+        assert!(speeds.iter().any(|speed| *speed > 1.5), "out of a jog or a run too: {speeds:?}");
+    }
 }
