@@ -52,13 +52,13 @@ const OFF_LEVEL: [f32; 2] = [0.002, 0.008];
 
 /// Where a character is on the graph, and where it is going.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Place<'a> {
+pub(crate) struct OnGraph<'a> {
     pub(crate) graph: &'a PolicyGraph,
     pub(crate) position: GraphPosition,
     pub(crate) goal: GraphPosition,
 }
 
-impl Place<'_> {
+impl OnGraph<'_> {
     /// Whether all gaits that act here have a variant.
     pub(crate) fn all_have(&self, variant: Variant) -> bool {
         let GraphPosition { from, to, .. } = self.position;
@@ -112,12 +112,12 @@ impl Urgency {
     /// down, before it goes anywhere.
     pub(crate) fn next(
         self,
-        place: Place<'_>,
+        place: OnGraph<'_>,
         state: &CharacterState,
         target: Option<Vec2>,
         dt: f32,
     ) -> Self {
-        let Place { graph, position, goal } = place;
+        let OnGraph { graph, position, goal } = place;
         let node = position.as_node();
         let arrived = position.is_same_place(goal);
         let stands = node.is_some_and(|node| graph.node(node).stands());

@@ -6,7 +6,7 @@
 
 use glam::Vec2;
 
-use crate::agility::{Place, moving_mps};
+use crate::agility::{OnGraph, moving_mps};
 use crate::state::CharacterState;
 use crate::variants::{Lasting, crossed};
 
@@ -38,7 +38,7 @@ const STANDS_SECS: f32 = 0.1;
 pub(crate) fn next_start(
     start: Lasting,
     at_rest: f32,
-    place: Place<'_>,
+    place: OnGraph<'_>,
     state: &CharacterState,
     target: Option<Vec2>,
     dt: f32,
@@ -68,7 +68,7 @@ pub(crate) fn next_start(
 /// ends once it is slow.
 pub(crate) fn next_stop(
     stop: Lasting,
-    place: Place<'_>,
+    place: OnGraph<'_>,
     state: &CharacterState,
     target: Option<Vec2>,
     dt: f32,

@@ -6,7 +6,7 @@
 
 use glam::Vec2;
 
-use crate::agility::{Place, moving_mps};
+use crate::agility::{OnGraph, moving_mps};
 use crate::heading::Heading;
 use crate::state::CharacterState;
 use crate::variants::crossed;
@@ -25,8 +25,8 @@ const GOES_RADIANS: f32 = 0.2;
 /// A character that is slower than this does not go; it sets off, metres per second.
 const GOES_MPS: f32 = 0.4;
 
-/// Below this speed a course is none, metres per second.
-const COURSE_MPS: f32 = 0.2;
+/// Below this speed a velocity has no direction, metres per second.
+const DIRECTION_MPS: f32 = 0.2;
 
 /// Time from a gait to its turning variant, and back, seconds. The first is no longer than a tick.
 const CROSS_SECS: [f32; 2] = [0.03, 0.4];
@@ -47,7 +47,7 @@ impl Turn {
     pub(crate) fn next(
         self,
         starts: bool,
-        place: Place<'_>,
+        place: OnGraph<'_>,
         state: &CharacterState,
         target: Option<Vec2>,
         dt: f32,
@@ -73,7 +73,8 @@ impl Turn {
         let velocity = root.linear_velocity.truncate();
         let speed = libm::sqrtf(velocity.length_squared());
         let off_heading = Heading::from_rotation(root.rotation).angle_off(way);
-        let off_course = if speed > COURSE_MPS { libm::fabsf(velocity.angle_to(way)) } else { off_heading };
+        let off_course =
+            if speed > DIRECTION_MPS { libm::fabsf(velocity.angle_to(way)) } else { off_heading };
         match self.turns {
             true => off_heading > FACES_RADIANS || off_course > GOES_RADIANS,
             false => {

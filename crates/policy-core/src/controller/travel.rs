@@ -3,7 +3,7 @@
 use glam::Vec2;
 
 use super::Controller;
-use crate::agility::{Place, Urgency};
+use crate::agility::{OnGraph, Urgency};
 use crate::balance::comes_to_rest;
 use crate::capture_step::CaptureStep;
 use crate::command::Command;
@@ -97,7 +97,7 @@ impl Controller {
     /// How far the character is from what it is asked to do, after the way on the graph.
     pub(super) fn follow_urgency(&mut self, state: &CharacterState, target: Option<Vec2>, dt: f32) {
         let TickReport { position, goal, skill, .. } = self.state.report;
-        let place = Place { graph: self.pack.graph(), position, goal };
+        let place = OnGraph { graph: self.pack.graph(), position, goal };
         let urgency = &mut self.state.urgency;
         *urgency = match self.config.agility {
             true => urgency.next(place, state, target, dt),
