@@ -7,9 +7,7 @@ use std::sync::Arc;
 
 use common::{acted, hand_over, moving, policy, weight};
 use glam::{Quat, Vec2, Vec3};
-use policy_core::{
-    CharacterPack, CharacterState, Command, Controller, ControllerConfig, Goal, PathId, Skeleton,
-};
+use policy_core::{CharacterPack, CharacterState, Command, Controller, ControllerConfig, Goal, PathId};
 
 const DT: f32 = 1.0 / 30.0;
 
