@@ -4,7 +4,7 @@ mod common;
 
 use std::sync::Arc;
 
-use common::{acted, hand_over, moving, n, policy, weight};
+use common::{acted, hand_over, moving, n, weight_of};
 use glam::{Vec2, Vec3};
 use policy_core::format::Manifest;
 use policy_core::{
@@ -55,9 +55,7 @@ fn tick(controller: &mut Controller, state: &CharacterState) -> [f32; 2] {
     let goal = Goal::Path { path: PathId::new(0), coordinate: 1.0 };
     let target = Some(Vec2::X * 10.0);
     controller.tick(state, &Command { goal, target, ..Command::default() }, DT);
-    let acted = acted(controller);
-    assert!((acted.iter().map(|term| term.1).sum::<f32>() - 1.0).abs() < 1e-6, "{acted:?}");
-    CATCHES.map(|name| weight(&acted, policy(name)))
+    CATCHES.map(|name| weight_of(controller, name))
 }
 
 #[test]
@@ -100,7 +98,7 @@ fn starts_turns_rough_ground_and_gaits_without_such_policies_are_left_alone() {
     let goal = Goal::Stay;
     let target = Some(Vec2::X * 10.0);
     between.tick(&drifting(TIPS), &Command { goal, target, ..Command::default() }, DT);
-    assert!(CATCHES.iter().all(|name| weight(&acted(&between), policy(name)) == 0.0));
+    assert!(CATCHES.iter().all(|name| weight_of(&between, name) == 0.0));
 }
 
 #[test]

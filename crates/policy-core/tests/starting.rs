@@ -4,7 +4,7 @@ mod common;
 
 use std::sync::Arc;
 
-use common::{acted, hand_over, moving, policy, weight};
+use common::{hand_over, moving, policy, weight_of};
 use glam::{Vec2, Vec3};
 use policy_core::{
     CharacterPack, CharacterState, Command, Controller, ControllerConfig, GiveWay, Goal, PathId,
@@ -49,9 +49,7 @@ fn share(controller: &mut Controller, state: &CharacterState, path: PathId, coor
     let target = coordinate.map(|_| Vec2::X * 10.0);
     let goal = Goal::Path { path, coordinate: coordinate.unwrap_or_default() };
     controller.tick(state, &Command { goal, target, ..Command::default() }, DT);
-    let acted = acted(controller);
-    assert!((acted.iter().map(|term| term.1).sum::<f32>() - 1.0).abs() < 1e-6, "{acted:?}");
-    weight(&acted, policy(STARTS.0))
+    weight_of(controller, STARTS.0)
 }
 
 #[test]

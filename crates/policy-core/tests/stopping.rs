@@ -4,7 +4,7 @@ mod common;
 
 use std::sync::Arc;
 
-use common::{acted, hand_over, moving, policy, weight};
+use common::{hand_over, moving, policy, weight_of};
 use glam::{Vec2, Vec3};
 use policy_core::{CharacterPack, Command, Controller, ControllerConfig, GiveWay, Goal, PathId};
 
@@ -40,9 +40,7 @@ fn share(controller: &mut Controller, speed: f32, path: usize, coordinate: Optio
     let goal = Goal::Path { path: PathId::new(path), coordinate: coordinate.unwrap_or_default() };
     let command = Command { goal, target: coordinate.map(|_| Vec2::X * 10.0), ..Command::default() };
     controller.tick(&moving(Vec3::X * speed), &command, DT);
-    let acted = acted(controller);
-    assert!((acted.iter().map(|term| term.1).sum::<f32>() - 1.0).abs() < 1e-6, "{acted:?}");
-    weight(&acted, policy(STOPS))
+    weight_of(controller, STOPS)
 }
 
 #[test]

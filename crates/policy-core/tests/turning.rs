@@ -5,7 +5,7 @@ mod common;
 
 use std::sync::Arc;
 
-use common::{acted, hand_over, moving, policy, weight};
+use common::{hand_over, moving, policy, weight_of};
 use glam::{Quat, Vec2, Vec3};
 use policy_core::{CharacterPack, CharacterState, Command, Controller, ControllerConfig, Goal, PathId};
 
@@ -47,9 +47,7 @@ fn share(controller: &mut Controller, moves: Moves, path: usize, coordinate: f32
     let goal = Goal::Path { path: PathId::new(path), coordinate };
     let target = way.map(|degrees| Vec2::from_angle(degrees.to_radians()) * 10.0);
     controller.tick(&state(moves), &Command { goal, target, ..Command::default() }, DT);
-    let acted = acted(controller);
-    assert!((acted.iter().map(|term| term.1).sum::<f32>() - 1.0).abs() < 1e-6, "{acted:?}");
-    weight(&acted, policy(TURNS))
+    weight_of(controller, TURNS)
 }
 
 /// A controller of a character that has gone ahead for two seconds.

@@ -62,6 +62,13 @@ pub fn weight(acted: &[(usize, f32)], policy: usize) -> f32 {
     acted.iter().filter(|term| term.0 == policy).map(|term| term.1).sum()
 }
 
+/// Weight of the policy of a name in the last tick; all weights add up to 1.
+pub fn weight_of(controller: &Controller, name: &str) -> f32 {
+    let acted = acted(controller);
+    assert!((acted.iter().map(|term| term.1).sum::<f32>() - 1.0).abs() < 1e-6, "{acted:?}");
+    weight(&acted, policy(name))
+}
+
 /// Lets `to` go on where `from` is, through bytes.
 pub fn hand_over(from: &Controller, to: &mut Controller) {
     let mut state = ControllerState::new(from.pack());
