@@ -8,10 +8,10 @@ use glam::Vec2;
 
 use crate::agility::{OnGraph, moving_mps};
 use crate::state::CharacterState;
-use crate::variants::{Lasting, crossed};
+use crate::variants::{Lasting, switched};
 
-/// Time from a gait to its starting variant, and back, seconds.
-const START_CROSS_SECS: [f32; 2] = [0.03, 0.2];
+/// Time from a gait to its starting or stopping variant, and back, seconds. The first is no longer than a tick.
+const CROSS_SECS: [f32; 2] = [0.03, 0.2];
 
 /// A start takes at most so long, seconds.
 const START_SECS: f32 = 1.0;
@@ -19,9 +19,6 @@ const START_SECS: f32 = 1.0;
 /// It has stood for so long before a start, in the measure of [`Urgency::at_rest`](crate::agility::Urgency::at_rest): 0.5 s. Out of a stop, or
 /// right after a skill, nothing has learned to start.
 const STOOD: f32 = 0.3;
-
-/// Time from a gait to its stopping variant, and back, seconds.
-const STOP_CROSS_SECS: [f32; 2] = [0.03, 0.2];
 
 /// A stop takes at most so long, seconds.
 const STOP_SECS: f32 = 2.0;
@@ -61,7 +58,7 @@ pub(crate) fn next_start(
         }
     };
     let acts = target.is_some() && secs > 0.0 && !place.crosses();
-    Lasting { share: crossed(start.share, if acts { 1.0 } else { 0.0 }, START_CROSS_SECS, dt), secs }
+    Lasting { share: switched(start.share, acts, CROSS_SECS, dt), secs }
 }
 
 /// What a stop is after a tick of `dt` seconds. It begins in the tick in which a character that goes has no target any more and is to stand, and
@@ -78,22 +75,12 @@ pub(crate) fn next_stop(
     let left = (stop.secs - dt).max(0.0);
     let secs = match target {
         _ if !can_stop => 0.0,
-        Some(_) => {
-            if speed > GOES_MPS {
-                STOP_SECS
-            } else {
-                0.0
-            }
-        }
-        None => {
-            if speed < STANDS_MPS {
-                left.min(STANDS_SECS)
-            } else {
-                left
-            }
-        }
+        Some(_) if speed > GOES_MPS => STOP_SECS,
+        Some(_) => 0.0,
+        None if speed < STANDS_MPS => left.min(STANDS_SECS),
+        None => left,
     };
     let is_to_stand = target.is_none() && moving_mps(place.graph, place.goal).is_none();
     let acts = is_to_stand && secs > 0.0 && !place.crosses();
-    Lasting { share: crossed(stop.share, if acts { 1.0 } else { 0.0 }, STOP_CROSS_SECS, dt), secs }
+    Lasting { share: switched(stop.share, acts, CROSS_SECS, dt), secs }
 }

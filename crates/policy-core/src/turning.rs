@@ -9,7 +9,7 @@ use glam::Vec2;
 use crate::agility::{OnGraph, moving_mps};
 use crate::heading::Heading;
 use crate::state::CharacterState;
-use crate::variants::crossed;
+use crate::variants::switched;
 
 /// Angle off the heading at which a target begins a turn, radians.
 const BEGINS_RADIANS: f32 = 0.7;
@@ -56,27 +56,28 @@ impl Turn {
             && moving_mps(place.graph, place.goal).is_some()
             && !starts
             && !place.crosses();
-        let way = target.and_then(|target| (target - state.root().position.truncate()).try_normalize());
-        let turns = way.filter(|_| can_turn).is_some_and(|way| self.goes_about(state, way));
         let heading = Heading::from_rotation(state.root().rotation);
-        let faced = way.filter(|way| heading.angle_off(*way) < BEGINS_RADIANS);
+        let way = target.and_then(|target| (target - state.root().position.truncate()).try_normalize());
+        let towards = way.map(|way| (way, heading.angle_off(way)));
+        let turns = towards.is_some_and(|(way, off)| can_turn && self.goes_about(state, way, off));
+        let faced = towards.filter(|(_, off_heading)| *off_heading < BEGINS_RADIANS);
         Self {
             turns,
-            share: crossed(self.share, if turns { 1.0 } else { 0.0 }, CROSS_SECS, dt),
-            way: faced.unwrap_or(self.way),
+            share: switched(self.share, turns, CROSS_SECS, dt),
+            way: faced.map_or(self.way, |(way, _)| way),
         }
     }
 
-    /// Whether it is to turn to go this way, or still turns.
-    fn goes_about(self, state: &CharacterState, way: Vec2) -> bool {
-        let root = state.root();
-        let velocity = root.linear_velocity.truncate();
+    /// Whether it is to turn to go this way, or still turns; `off_heading` is the angle from the heading to it, radians.
+    fn goes_about(self, state: &CharacterState, way: Vec2, off_heading: f32) -> bool {
+        let velocity = state.root().linear_velocity.truncate();
         let speed = libm::sqrtf(velocity.length_squared());
-        let off_heading = Heading::from_rotation(root.rotation).angle_off(way);
-        let off_course =
-            if speed > DIRECTION_MPS { libm::fabsf(velocity.angle_to(way)) } else { off_heading };
         match self.turns {
-            true => off_heading > FACES_RADIANS || off_course > GOES_RADIANS,
+            true => {
+                let off_course =
+                    if speed > DIRECTION_MPS { libm::fabsf(velocity.angle_to(way)) } else { off_heading };
+                off_heading > FACES_RADIANS || off_course > GOES_RADIANS
+            }
             false => {
                 let has_gone = self.way != Vec2::ZERO && speed > GOES_MPS;
                 let has_changed = libm::fabsf(self.way.angle_to(way)) > CHANGED_RADIANS;

@@ -21,6 +21,11 @@ pub(crate) fn crossed(before: f32, now: f32, [to_all, to_nothing]: [f32; 2], dt:
     now.clamp(before - dt / to_nothing, before + dt / to_all).clamp(0.0, 1.0)
 }
 
+/// A share that goes to all while something acts, and back to nothing.
+pub(crate) fn switched(before: f32, acts: bool, cross: [f32; 2], dt: f32) -> f32 {
+    crossed(before, if acts { 1.0 } else { 0.0 }, cross, dt)
+}
+
 /// What acts for a while after the tick that last called for it.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct Lasting {
@@ -34,7 +39,7 @@ impl Lasting {
     /// What it is after a tick of `dt` seconds, where it lasts for `lasts` seconds and comes and goes within `cross` seconds.
     pub(crate) fn next(self, is_called_for: bool, lasts: f32, cross: [f32; 2], dt: f32) -> Self {
         let secs = if is_called_for { lasts } else { (self.secs - dt).max(0.0) };
-        Self { share: crossed(self.share, if secs > 0.0 { 1.0 } else { 0.0 }, cross, dt), secs }
+        Self { share: switched(self.share, secs > 0.0, cross, dt), secs }
     }
 }
 

@@ -4,7 +4,7 @@ mod common;
 
 use std::sync::Arc;
 
-use common::{acted, hand_over, n, policy, standing, weight};
+use common::{acted, hand_over, n, policy, weight_of};
 use glam::{Quat, Vec2, Vec3};
 use policy_core::format::Manifest;
 use policy_core::{
@@ -35,14 +35,9 @@ fn controller_at(node: &str, capture_steps: bool) -> Controller {
 
 /// A body that stands, faces along an angle and moves at a speed along its heading.
 fn moving(angle: f32, speed: f32) -> CharacterState {
-    let skeleton = Skeleton::humanoid();
-    let mut state = standing();
+    let mut state = common::moving(Vec3::new(angle.cos(), angle.sin(), 0.0) * speed);
     for body in &mut state.bodies {
         body.rotation = Quat::from_rotation_z(angle);
-        body.linear_velocity = Vec3::new(angle.cos(), angle.sin(), 0.0) * speed;
-    }
-    for foot in skeleton.feet() {
-        state.body_mut(*foot).position.z = 0.07;
     }
     state
 }
@@ -52,9 +47,7 @@ fn tick(controller: &mut Controller, state: &CharacterState, towards: Option<f32
     let target = towards.map(|angle| 10.0 * Vec2::from_angle(angle));
     let goal = Goal::Path { path: PathId::new(0), coordinate: 1.0 };
     controller.tick(state, &Command { goal, target, ..Command::default() }, DT);
-    let acted = acted(controller);
-    assert!((acted.iter().map(|term| term.1).sum::<f32>() - 1.0).abs() < 1e-6, "{acted:?}");
-    weight(&acted, policy(STRAFES))
+    weight_of(controller, STRAFES)
 }
 
 #[test]
@@ -102,7 +95,7 @@ fn a_stand_steps_back_too_and_a_low_gait_does_not() {
         let mut controller = controller_at(node, true);
         let goal = Goal::Stay;
         controller.tick(&moving(0.0, -0.8), &Command { goal, ..Command::default() }, DT);
-        let share = weight(&acted(&controller), policy(STRAFES));
+        let share = weight_of(&controller, STRAFES);
         assert_eq!(share > 0.0 && share < 1.0, steps, "{node}: {share}");
     }
 }

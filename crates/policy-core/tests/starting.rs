@@ -17,12 +17,7 @@ const STARTS: (&str, f32) = ("roll", 0.8);
 
 /// It stands at `idle`, walks at 1 m/s, jogs at 2 m/s and crouches at 0.4 m/s.
 fn pack() -> Arc<CharacterPack> {
-    let mut manifest = common::manifest();
-    for (index, speed) in [0.0, 1.0, 2.0].into_iter().enumerate() {
-        manifest.policies[index].speed_mps = Some(speed);
-        manifest.policies[index].starting = Some(STARTS.0.into());
-    }
-    manifest.policies[policy("crouch")].speed_mps = Some(0.4);
+    let mut manifest = common::gaits(|gait| gait.starting = Some(STARTS.0.into()));
     manifest.policies[policy(STARTS.0)].speed_mps = Some(STARTS.1);
     Arc::new(CharacterPack::from_parts(manifest, common::tensors(0.0)).unwrap())
 }
@@ -79,7 +74,7 @@ fn a_start_takes_a_second_at_most() {
 fn slow_gaits_light_sticks_and_characters_that_move_have_none() {
     assert_eq!(tick(&mut stands(), 0.0, Some(0.4)), 0.0, "a light stick");
     let mut down = stands();
-    assert_eq!(share(&mut down, &moving(Vec3::X * 0.0), PathId::new(1), Some(2.0)), 0.0, "down to a crouch");
+    assert_eq!(share(&mut down, &moving(Vec3::ZERO), PathId::new(1), Some(2.0)), 0.0, "down to a crouch");
     let mut controller = stood(0);
     (0..60).for_each(|_| assert_eq!(tick(&mut controller, 0.6, None), 0.0, "it does not stand still"));
     assert_eq!(tick(&mut controller, 0.6, Some(1.0)), 0.0);

@@ -4,7 +4,7 @@ mod common;
 
 use std::sync::Arc;
 
-use common::{hand_over, moving, policy, weight_of};
+use common::{hand_over, moving, weight_of};
 use glam::{Vec2, Vec3};
 use policy_core::{CharacterPack, Command, Controller, ControllerConfig, GiveWay, Goal, PathId};
 
@@ -15,12 +15,7 @@ const STOPS: &str = "roll";
 
 /// It stands at `idle`, walks at 1 m/s, jogs at 2 m/s and crouches at 0.4 m/s; a crouch has no stopping variant.
 fn pack() -> Arc<CharacterPack> {
-    let mut manifest = common::manifest();
-    for (index, speed) in [0.0, 1.0, 2.0].into_iter().enumerate() {
-        manifest.policies[index].speed_mps = Some(speed);
-        manifest.policies[index].stopping = Some(STOPS.into());
-    }
-    manifest.policies[policy("crouch")].speed_mps = Some(0.4);
+    let manifest = common::gaits(|gait| gait.stopping = Some(STOPS.into()));
     Arc::new(CharacterPack::from_parts(manifest, common::tensors(0.0)).unwrap())
 }
 

@@ -16,12 +16,7 @@ const TURNS: &str = "roll";
 
 /// It stands at `idle`, walks at 1 m/s, jogs at 2 m/s and crouches at 0.4 m/s; a crouch has no turning variant.
 fn pack() -> Arc<CharacterPack> {
-    let mut manifest = common::manifest();
-    for (index, speed) in [0.0, 1.0, 2.0].into_iter().enumerate() {
-        manifest.policies[index].speed_mps = Some(speed);
-        manifest.policies[index].turning = Some(TURNS.into());
-    }
-    manifest.policies[policy("crouch")].speed_mps = Some(0.4);
+    let manifest = common::gaits(|gait| gait.turning = Some(TURNS.into()));
     Arc::new(CharacterPack::from_parts(manifest, common::tensors(0.0)).unwrap())
 }
 

@@ -107,6 +107,17 @@ pub fn mlp(sizes: &[usize], seed: u32) -> Mlp {
 
 pub const NODES: [&str; 7] = ["idle", "walk", "jog", "run", "crouch", "crawl", "roll"];
 
+/// The manifest of a pack that stands at `idle`, walks at 1 m/s, jogs at 2 m/s and crouches at 0.4 m/s, with a change to each of the first three.
+pub fn gaits(mut change: impl FnMut(&mut PolicyEntry)) -> Manifest {
+    let mut manifest = manifest();
+    for (gait, speed) in manifest.policies.iter_mut().zip([0.0, 1.0, 2.0]) {
+        gait.speed_mps = Some(speed);
+        change(gait);
+    }
+    manifest.policies[policy("crouch")].speed_mps = Some(0.4);
+    manifest
+}
+
 pub fn manifest() -> Manifest {
     let policy = |name: &str| PolicyEntry {
         name: name.into(),

@@ -1,6 +1,7 @@
 use std::path::Path;
 
-use glam::{Quat, Vec3};
+use clips::Clip;
+use glam::{Quat, Vec2, Vec3};
 use physics_bridge::Model;
 use random::Rng;
 
@@ -10,14 +11,20 @@ use super::super::made_up::{Setting, still};
 use super::super::normalisers::Normalisers;
 use super::*;
 
-#[test]
-fn a_standing_start_is_upright_and_moves_ahead() {
+/// The humanoid, and one clip to train on with its normalisers.
+fn humanoid_with(clip: Clip) -> (Model, Normalisers, Demonstrations) {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../assets/humanoid.xml");
     let model = Model::load(path).unwrap();
+    let normalisers = Normalisers::from_clips(std::slice::from_ref(&clip), &model).unwrap();
+    let clips = Demonstrations::from_clips(&[(clip, 1.0, false)], &model, &normalisers.frame).unwrap();
+    (model, normalisers, clips)
+}
+
+#[test]
+fn a_standing_start_is_upright_and_moves_ahead() {
     let mut tilted = still(30);
     tilted.local_rotations = vec![vec![Quat::from_rotation_x(0.3); 15]; 30];
-    let normalisers = Normalisers::from_clips(std::slice::from_ref(&tilted), &model).unwrap();
-    let clips = Demonstrations::from_clips(&[(tilted, 1.0, false)], &model, &normalisers.frame).unwrap();
+    let (model, normalisers, clips) = humanoid_with(tilted);
     let mut config = EnvironmentConfig::default();
     (config.reset.standing_share, config.reward.tracking_weight) = (1.0, 0.5);
     let setting = Setting::alone("walk", (model, normalisers), config);
@@ -41,11 +48,7 @@ fn a_standing_start_is_upright_and_moves_ahead() {
 
 #[test]
 fn a_timed_skill_sees_the_second_of_its_clip_in_every_start() {
-    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../assets/humanoid.xml");
-    let model = Model::load(path).unwrap();
-    let clip = still(46);
-    let normalisers = Normalisers::from_clips(std::slice::from_ref(&clip), &model).unwrap();
-    let clips = Demonstrations::from_clips(&[(clip, 1.0, false)], &model, &normalisers.frame).unwrap();
+    let (model, normalisers, clips) = humanoid_with(still(46));
     let mut config = EnvironmentConfig::default();
     (config.command.clock_seconds, config.reward.tracking_weight) = (1.5, 0.9);
     (config.reset.standing_share, config.reset.other_clips_share) = (0.3, 0.3);
@@ -79,11 +82,7 @@ fn a_timed_skill_sees_the_second_of_its_clip_in_every_start() {
 
 #[test]
 fn a_character_that_is_to_stand_can_be_paid_for_facing_where_it_faced() {
-    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../assets/humanoid.xml");
-    let model = Model::load(path).unwrap();
-    let clip = still(30);
-    let normalisers = Normalisers::from_clips(std::slice::from_ref(&clip), &model).unwrap();
-    let clips = Demonstrations::from_clips(&[(clip, 1.0, false)], &model, &normalisers.frame).unwrap();
+    let (model, normalisers, clips) = humanoid_with(still(30));
     let paid = |kept_facing_share, stop_share, turned: f32| {
         let mut config = EnvironmentConfig::default();
         (config.reset.standing_share, config.command.stop_share) = (1.0, stop_share);
@@ -96,7 +95,7 @@ fn a_character_that_is_to_stand_can_be_paid_for_facing_where_it_faced() {
         env.command.target = env.root_position();
         let root = &mut env.state.bodies[0];
         root.rotation = Quat::from_rotation_z(turned) * root.rotation;
-        env.reward(&context, glam::Vec2::ZERO).task
+        env.reward(&context, Vec2::ZERO).task
     };
     assert!((paid(1.0, 1.0, 0.0) - paid(0.0, 1.0, 0.0)).abs() < 1e-6, "it faces where it faced");
     assert!(paid(1.0, 1.0, 1.0) < paid(1.0, 1.0, 0.5) && paid(1.0, 1.0, 0.5) < paid(1.0, 1.0, 0.0) - 0.02);

@@ -83,7 +83,7 @@ const LET_GO_SECS: f32 = 0.3;
 /// The same for a variant that stops: it takes over at once.
 const STOPS_SECS: f32 = 0.07;
 
-/// Shortest time on the way of a character that is to stop, seconds: so long a run takes to begin.
+/// Shortest time on the way to a start in the middle of a stride, seconds: so long a run takes to begin.
 const STRIDE_SECS: f32 = 1.2;
 
 /// Speed of a character that stands, metres per second.
