@@ -10,7 +10,7 @@ use super::command::DT_SECS;
 use super::env::{Env, EnvContext};
 
 /// Length of a push, seconds.
-const PUSH_SECS: f32 = 0.2;
+pub(super) const PUSH_SECS: f32 = 0.2;
 
 /// Length of a long push, seconds, least and most, and its force as a share of that of a short one.
 const LONG_PUSH_SECS: [f32; 2] = [0.5, 2.0];
@@ -134,12 +134,17 @@ impl Env {
                 (self.rng.angle(), PUSH_SECS, 1.0)
             };
             let force = Vec2::from_angle(angle) * self.rng.uniform() * share * config.push_newton;
-            let body = context.pushed[self.rng.index(context.pushed.len())];
-            let within = "a recipe's push is between 0 and 5000 newton";
-            match &mut self.company {
-                Some(company) => company.push(body, force.extend(0.0), secs).expect(within),
-                None => self.character.push(body, force.extend(0.0), secs).expect(within),
-            }
+            self.push_body(context, force, secs);
+        }
+    }
+
+    /// Begins a push on one of the bodies that are pushed.
+    pub(super) fn push_body(&mut self, context: &EnvContext<'_>, force: Vec2, secs: f32) {
+        let body = context.pushed[self.rng.index(context.pushed.len())];
+        let within = "a recipe's push is between 0 and 5000 newton";
+        match &mut self.company {
+            Some(company) => company.push(body, force.extend(0.0), secs).expect(within),
+            None => self.character.push(body, force.extend(0.0), secs).expect(within),
         }
     }
 }

@@ -2,6 +2,7 @@
 
 use super::file::is_plain;
 use super::{Phase, Recipe};
+use crate::env::OutOf;
 
 /// Whether it holds, the field, what was expected and what was found.
 type Check = (bool, &'static str, &'static str, String);
@@ -175,6 +176,13 @@ impl Recipe {
                     .is_none_or(|in_play| !together && in_play.maximum_speed_mps.is_some() == tracks),
                 "environment.reset.in_play",
                 "none beside paths; with a tracking_weight one with a maximum_speed_mps, and without a tracking_weight one without",
+                format!("{:?}", reset.in_play),
+            ),
+            (
+                reset.in_play.is_none_or(|in_play| in_play.out_of != OutOf::Push)
+                    || (phase.environment.randomisation.push_newton > 0.0 && command.stick_share == 1.0),
+                "environment.reset.in_play.out_of",
+                "\"push\" beside a randomisation.push_newton above 0 and a command.stick_share of 1 alone",
                 format!("{:?}", reset.in_play),
             ),
             (

@@ -17,6 +17,15 @@ impl Command {
         }
     }
 
+    /// Points a stick this way, radians, in place of its first direction.
+    pub(in super::super) fn go_straight(&mut self, graph: &TrainingGraph, position: Vec2, radians: f32) {
+        if let Some(direction) = &mut self.stick {
+            *direction = radians;
+        }
+        self.follow_stick(graph, position);
+        self.seen_target = self.target;
+    }
+
     /// How far the stick is pushed, in [0, 1].
     fn push(&self, graph: &TrainingGraph) -> f32 {
         match (self.stop, graph.begins_standing(self.path)) {

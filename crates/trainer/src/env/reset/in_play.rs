@@ -3,13 +3,17 @@
 
 use glam::Vec2;
 use physics_bridge::Snapshot;
-use policy_core::training::{FrameHistory, TARGET_RANGE_METRES};
-use policy_core::{Command as GameCommand, Controller, Goal, GraphPosition, SkillId};
-use serde::{Deserialize, Serialize};
+use policy_core::training::{FrameHistory, Path, TARGET_RANGE_METRES};
+use policy_core::{Command as GameCommand, Controller, Goal, GraphPosition, PathId, SkillId};
 
 use super::super::command::{Command, DT_SECS};
 use super::super::env::{Env, EnvContext};
+use super::super::randomisation::PUSH_SECS;
 use super::keep_one;
+
+mod config;
+
+pub use config::{InPlayConfig, OutOf};
 
 /// The gaits that lead up to a start, their variants, and a skill that may have ended just before it.
 pub(crate) const PLAYED: &[&str] = &[
@@ -31,30 +35,13 @@ pub(crate) const PLAYED: &[&str] = &[
     "run_steady",
     "walk_start",
     "walk_turn",
+    "walk_catch",
     "idle_stop",
     "roll",
 ];
 
-/// Nodes for [`OutOf::Anything`]; the first one stands.
-const OUT_OF: [&str; 14] = [
-    "idle",
-    "idle",
-    "walk",
-    "walk",
-    "jog",
-    "run",
-    "crouch",
-    "crouch",
-    "zombie_walk",
-    "strafe",
-    "strafe",
-    "strafe",
-    "strafe",
-    "strafe",
-];
-
-/// Nodes for [`OutOf::Stride`].
-const STRIDES: [&str; 5] = ["walk", "walk", "jog", "jog", "run"];
+/// Share of the walks that begin with a push and are half-way between standing and walking, as half a stick has it.
+const HALF_SHARE: f32 = 0.4;
 
 /// The skill that may have ended just before a start.
 const ROLL: &str = "roll";
@@ -86,6 +73,16 @@ const STOPS_SECS: f32 = 0.07;
 /// Shortest time on the way to a start in the middle of a stride, seconds: so long a run takes to begin.
 const STRIDE_SECS: f32 = 1.2;
 
+/// Time from the begin of a push to a start that catches it, seconds: a game takes it for one once the body tips over.
+const PUSHED_SECS: [f32; 2] = [0.07, 0.2];
+
+/// Smallest force of such a push, as a share of the largest.
+const LEAST_PUSH: f32 = 0.3;
+
+/// Share of such pushes that come from behind, within this angle, radians: they are the hardest to catch out of a run.
+const FROM_BEHIND_SHARE: f32 = 0.35;
+const FROM_BEHIND_RADIANS: f32 = 0.4;
+
 /// Speed of a character that stands, metres per second.
 const STANDS_MPS: f32 = 0.3;
 
@@ -98,47 +95,17 @@ const KEPT: usize = 6;
 /// Share of the starts that are one of those, once there are so many.
 const KEPT_SHARE: f32 = 0.8;
 
-/// Starts where a game starts an episodic skill, or where a variant begins to act.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct InPlayConfig {
-    /// Share of episodes.
-    pub share: f32,
-    /// Speed below which the skill starts, as in the plan of the pack, metres per second. Leave it out for a variant of a gait. The
-    /// variant of a standing gait starts up to 0.3 s after the stick is released, the variant of a moving gait from standing or mid-gait.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub maximum_speed_mps: Option<f32>,
-    /// Out of what it starts.
-    #[serde(default)]
-    pub out_of: OutOf,
-}
-
-/// What a character does before it starts.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "snake_case")]
-pub enum OutOf {
-    /// Any gait but a crawl, with turns, halts and rolls.
-    #[default]
-    Anything,
-    /// It stands, for a variant that sets off.
-    Stand,
-    /// It walks, jogs or runs, for a variant that turns, or that stops: that one starts as soon as the stick is released.
-    Stride,
-}
-
-impl OutOf {
-    /// Of so many starts one each is out of these nodes.
-    fn nodes(self) -> &'static [&'static str] {
-        match self {
-            Self::Anything => &OUT_OF,
-            Self::Stand => &OUT_OF[..1],
-            Self::Stride => &STRIDES,
-        }
-    }
-}
-
 /// Starts that were played and have not failed, to return to.
-pub(in super::super) type PlayedStarts = Vec<(Snapshot, FrameHistory)>;
+pub(in super::super) type PlayedStarts = Vec<PlayedStart>;
+
+/// A character at a start.
+#[derive(Clone, Debug)]
+pub(in super::super) struct PlayedStart {
+    snapshot: Snapshot,
+    history: FrameHistory,
+    /// The way that it went, radians, where it is to go on.
+    way: Option<f32>,
+}
 
 impl Env {
     /// Starts an episode as a game would, for a share of the episodes; false for the others, and for a character that fell on the way.
@@ -151,37 +118,38 @@ impl Env {
         }
         let returns = self.played.len() == KEPT && self.rng.chance(KEPT_SHARE);
         if returns {
-            let (snapshot, history) = &self.played[self.rng.index(KEPT)];
-            self.character.restore(snapshot).expect("a snapshot of the same character");
-            self.history.clone_from(history);
+            let start = &self.played[self.rng.index(KEPT)];
+            self.character.restore(&start.snapshot).expect("a snapshot of the same character");
+            self.history.clone_from(&start.history);
             self.character.sense_into(&mut self.state);
-        } else if !self.play_up_to_start(context, &config, played.clone()) {
+            let way = start.way;
+            return self.begin_in_play(context, way);
+        }
+        let Some(way) = self.play_up_to_start(context, &config, played.clone()) else { return false };
+        let way = Some(way.to_angle()).filter(|_| config.out_of == OutOf::Push);
+        if !self.begin_in_play(context, way) {
             return false;
         }
-        if !self.begin_in_play(context) {
-            return false;
-        }
-        if !returns {
-            let start = (self.character.save(), self.history.clone());
-            keep_one(&mut self.played, KEPT, start, &mut self.rng);
-        }
+        let start = PlayedStart { snapshot: self.character.save(), history: self.history.clone(), way };
+        keep_one(&mut self.played, KEPT, start, &mut self.rng);
         true
     }
 
-    /// Plays up to the moment of the start. False when the physics diverges or that moment does not come.
+    /// Plays up to the moment of the start, and tells the way that it was to go. `None` when the physics diverges or that moment does not come.
     fn play_up_to_start(
         &mut self,
         context: &EnvContext<'_>,
         config: &InPlayConfig,
         mut controller: Controller,
-    ) -> bool {
+    ) -> Option<Vec2> {
         self.start_standing(context);
         controller.reset();
         let pack = controller.pack().clone();
         let graph = pack.graph();
-        let stand = graph.node_named(OUT_OF[0]).unwrap_or_default();
+        let stand = graph.node_named(OutOf::Stand.nodes()[0]).unwrap_or_default();
         controller.place_at(GraphPosition::node(stand));
-        let strides = config.out_of == OutOf::Stride;
+        let strides = config.out_of.strides();
+        let (pushes, mut takes_over_at) = (config.out_of == OutOf::Push, None);
         let nodes = config.out_of.nodes();
         let out_of = graph.node_named(nodes[self.rng.index(nodes.len())]).unwrap_or(stand);
         let shortest = if strides { STRIDE_SECS } else { 0.3 };
@@ -198,6 +166,13 @@ impl Env {
             None => (self.rng.range(0.5, REST_SECS), Some(STANDS_MPS)),
         };
         let rolls = |skill: &SkillId| pack.skills()[skill.index()].starts_from(out_of);
+        let first_steps = |path: &Path| path.nodes().starts_with(&[stand, out_of]);
+        let halfway = graph.paths().iter().position(first_steps).filter(|_| pushes);
+        let halfway = halfway.filter(|_| self.rng.chance(HALF_SHARE));
+        let (goal, push) = match halfway {
+            Some(path) => (Goal::Path { path: PathId::new(path), coordinate: 0.5 }, 0.5),
+            None => (Goal::Node(out_of), 1.0),
+        };
         let mut roll =
             pack.skill_named(ROLL).filter(rolls).filter(|_| !strides && self.rng.chance(ROLL_SHARE));
         let (mut settled_at, mut turns_at) = (0.0, 0.0);
@@ -216,35 +191,58 @@ impl Env {
                 report.position.nearest_node() == stand && root.linear_velocity.truncate().length() < most
             });
             if ready && secs >= settled_at.max(way_secs + rest_secs) {
-                return true;
+                match takes_over_at {
+                    None if pushes => {
+                        self.push_start(context, direction);
+                        takes_over_at = Some(secs + self.rng.range(PUSHED_SECS[0], PUSHED_SECS[1]));
+                    }
+                    Some(at) if secs < at => {}
+                    _ => return Some(direction),
+                }
             }
             if secs >= turns_at {
-                direction = facing.rotate(Vec2::from_angle(self.rng.angle()));
+                let turns = if pushes { 0.0 } else { self.rng.angle() };
+                direction = facing.rotate(Vec2::from_angle(turns));
                 halts = !strides && self.rng.chance(HALT_SHARE);
                 turns_at = secs + self.rng.range(DIRECTION_SECS[0], DIRECTION_SECS[1]);
             }
             facing = facing.rotate(Vec2::from_angle(looks_round * DT_SECS));
-            let ahead = root.position.truncate() + TARGET_RANGE_METRES * direction;
-            let on_its_way = secs < way_secs;
+            let ahead = root.position.truncate() + push * TARGET_RANGE_METRES * direction;
+            let on_its_way = secs < way_secs || pushes;
             let asked = GameCommand {
                 target: ((on_its_way && !halts) || rolling).then_some(ahead),
                 facing: graph.node(out_of).strafes.then_some(facing),
-                goal: Goal::Node(if on_its_way { out_of } else { stand }),
+                goal: if on_its_way { goal } else { Goal::Node(stand) },
                 skill: if secs >= way_secs / 2.0 { roll.take() } else { None },
                 ..GameCommand::default()
             };
             if !self.step_before(context, controller.tick(&self.state, &asked, DT_SECS)) {
-                return false;
+                return None;
             }
         }
-        false
+        None
     }
 
-    /// Begins the episode where the character is, and the clip of a skill that tracks one; false where it has failed at once.
-    fn begin_in_play(&mut self, context: &EnvContext<'_>) -> bool {
+    /// Begins a push from any side, often from behind a character that goes this way.
+    fn push_start(&mut self, context: &EnvContext<'_>, way: Vec2) {
+        let newton = self.rng.range(LEAST_PUSH, 1.0) * context.config.randomisation.push_newton;
+        let off_way = match self.rng.chance(FROM_BEHIND_SHARE) {
+            true => self.rng.range(-FROM_BEHIND_RADIANS, FROM_BEHIND_RADIANS),
+            false => self.rng.angle(),
+        };
+        let force = newton * way.rotate(Vec2::from_angle(off_way));
+        self.push_body(context, force, PUSH_SECS);
+    }
+
+    /// Begins the episode where the character is, and the clip of a skill that tracks one; false where it has failed at once. `way` is the one
+    /// to go on, radians.
+    fn begin_in_play(&mut self, context: &EnvContext<'_>, way: Option<f32>) -> bool {
         self.tracker = false;
         self.command = Command::start(&context.config.command, context.graph, false, &mut self.rng);
         self.aim(context);
+        if let Some(way) = way {
+            self.command.go_straight(context.graph, self.root_position(), way);
+        }
         let tracks = context.config.reward.tracking_weight > 0.0;
         self.tracking = tracks.then(|| self.track_from_the_beginning(context));
         !self.has_failed(context)

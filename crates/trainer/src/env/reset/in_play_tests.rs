@@ -16,27 +16,35 @@ fn starts(speed_mps: f32, maximum_speed_mps: Option<f32>, tracking_weight: f32) 
 }
 
 fn starts_of(speed_mps: f32, in_play: InPlayConfig, tracking_weight: f32) -> (Vec<f32>, usize) {
-    let (model, pack, normalisers) = shipped();
-    let clips = Demonstrations::from_clips(&[(still(30), 1.0, false)], &model, &normalisers.frame).unwrap();
     let mut config = EnvironmentConfig::default();
     (config.reward.tracking_weight, config.command.speed_mps) = (tracking_weight, speed_mps);
+    let (mut speeds, mut tracking) = (Vec::new(), 0);
+    start_each(config, in_play, |env| {
+        speeds.push(env.state.root().linear_velocity.truncate().length());
+        tracking += usize::from(env.tracks());
+    });
+    (speeds, tracking)
+}
+
+/// Looks at the starts of 16 tries.
+fn start_each(mut config: EnvironmentConfig, in_play: InPlayConfig, mut look: impl FnMut(&mut Env)) {
+    let (model, pack, normalisers) = shipped();
+    let clips = Demonstrations::from_clips(&[(still(30), 1.0, false)], &model, &normalisers.frame).unwrap();
     config.reset.in_play = Some(in_play);
     let gaits = Controller::with_config(pack, ControllerConfig { auto_recover: false, ..Default::default() });
     let setting = Setting::alone("learns", (model, normalisers), config);
     let demonstrations = [&clips];
-    let context = EnvContext { company: Some(&gaits), ..setting.context(&demonstrations) };
+    let pushed = [setting.model.skeleton().root()];
+    let context = EnvContext { company: Some(&gaits), pushed: &pushed, ..setting.context(&demonstrations) };
     let mut env = Env::new(&setting.model, &context, Rng::new(8, 0));
-    let (mut speeds, mut tracking) = (Vec::new(), 0);
     for _ in 0..16 {
         if env.start_in_play(&context) {
-            speeds.push(env.state.root().linear_velocity.truncate().length());
-            tracking += usize::from(env.tracks());
+            look(&mut env);
         }
     }
     assert!(env.played.len() == KEPT, "{} starts are kept", env.played.len());
     let without = EnvironmentConfig::default();
     assert!(!env.start_in_play(&EnvContext { config: &without, ..context }));
-    (speeds, tracking)
 }
 
 #[test]
@@ -70,4 +78,22 @@ fn variants_that_stop_or_turn_start_in_the_middle_of_a_stride() {
         assert!(speeds.len() >= 12 && speeds.iter().all(|speed| *speed > 0.4), "{speeds:?}");
         assert!(speeds.iter().any(|speed| *speed > 1.5), "out of a jog or a run too: {speeds:?}");
     }
+}
+
+#[test]
+fn a_variant_that_catches_starts_in_the_middle_of_a_push_and_is_to_go_on() {
+    let mut config = EnvironmentConfig::default();
+    (config.command.speed_mps, config.command.stick_share) = (1.5, 1.0);
+    config.randomisation.push_newton = 600.0;
+    let in_play = InPlayConfig { share: 1.0, maximum_speed_mps: None, out_of: OutOf::Push };
+    let (mut starts, mut driven) = (0, 0);
+    start_each(config, in_play, |env| {
+        starts += 1;
+        let (velocity, way) =
+            (env.state.root().linear_velocity.truncate(), env.command.target - env.root_position());
+        // Straight on its velocity would be along its way.
+        driven += usize::from(velocity.perp_dot(way.normalize()).abs() > 0.3);
+        assert!(velocity.length() > 0.1 && way.length() > 1.0, "{velocity}, {way}");
+    });
+    assert!(starts >= 12 && driven >= 3, "{driven} of {starts} are driven aside");
 }

@@ -1,0 +1,75 @@
+//! Settings of starts in play.
+
+use serde::{Deserialize, Serialize};
+
+/// Nodes for [`OutOf::Anything`]; the first one stands.
+const OUT_OF: [&str; 14] = [
+    "idle",
+    "idle",
+    "walk",
+    "walk",
+    "jog",
+    "run",
+    "crouch",
+    "crouch",
+    "zombie_walk",
+    "strafe",
+    "strafe",
+    "strafe",
+    "strafe",
+    "strafe",
+];
+
+/// Nodes for [`OutOf::Stride`].
+const STRIDES: [&str; 5] = ["walk", "walk", "jog", "jog", "run"];
+
+/// Nodes for [`OutOf::Push`].
+const PUSHED: [&str; 5] = ["walk", "walk", "jog", "run", "run"];
+
+/// Starts where a game starts an episodic skill, or where a variant begins to act.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct InPlayConfig {
+    /// Share of episodes.
+    pub share: f32,
+    /// Speed below which the skill starts, as in the plan of the pack, metres per second. Leave it out for a variant of a gait. The
+    /// variant of a standing gait starts up to 0.3 s after the stick is released, the variant of a moving gait from standing or mid-gait.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub maximum_speed_mps: Option<f32>,
+    /// Out of what it starts.
+    #[serde(default)]
+    pub out_of: OutOf,
+}
+
+/// What a character does before it starts.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum OutOf {
+    /// Any gait but a crawl, with turns, halts and rolls.
+    #[default]
+    Anything,
+    /// It stands, for a variant that sets off.
+    Stand,
+    /// It walks, jogs or runs, for a variant that turns, or that stops: that one starts as soon as the stick is released.
+    Stride,
+    /// It walks, jogs or runs, half of the time straight ahead, and is being pushed by up to `randomisation.push_newton`: for a variant that
+    /// catches it. It is to go on.
+    Push,
+}
+
+impl OutOf {
+    /// Of so many starts one each is out of these nodes.
+    pub(super) fn nodes(self) -> &'static [&'static str] {
+        match self {
+            Self::Anything => &OUT_OF,
+            Self::Stand => &OUT_OF[..1],
+            Self::Stride => &STRIDES,
+            Self::Push => &PUSHED,
+        }
+    }
+
+    /// Whether it starts in the middle of a stride.
+    pub(super) fn strides(self) -> bool {
+        matches!(self, Self::Stride | Self::Push)
+    }
+}
