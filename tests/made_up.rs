@@ -35,7 +35,7 @@ pub fn pack(model: &Model, mjcf: &str) -> CharacterPack {
         starting: None,
         stopping: None,
         turning: None,
-        pushed_aside: None,
+        catching: None,
         origin: "made up".into(),
     };
     let end = EndEntry {

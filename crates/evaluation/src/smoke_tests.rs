@@ -63,7 +63,7 @@ fn pack(falls: bool) -> Arc<CharacterPack> {
         starting: None,
         stopping: None,
         turning: None,
-        pushed_aside: None,
+        catching: None,
         origin: "made up".into(),
     };
     let edge = |a: &str, b: &str| EdgeEntry {

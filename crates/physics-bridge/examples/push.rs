@@ -1,6 +1,6 @@
-//! A walk that is pushed: prints which policies act in each tick, and writes the poses to watch them.
+//! A gait that is pushed: prints which policies act in each tick, and writes the poses to watch them.
 //!
-//! `cargo run --release -p physics-bridge --example push -- 0 320 push.json` pushes by 320 N to the left, then
+//! `cargo run --release -p physics-bridge --example push -- 0 320 push.json run` pushes a run by 320 N to the left, then
 //! `cargo xtask demo -- --poses push.json` shows it.
 
 use std::sync::Arc;
@@ -12,21 +12,21 @@ use policy_core::{CharacterPack, Command, Controller, Goal, Heading};
 const PACK: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../assets/humanoid.pack.safetensors");
 
 /// The tick in which the push begins, the first one that is written, and how many there are.
-const TICKS: [u32; 3] = [75, 65, 150];
+const TICKS: [u32; 3] = [95, 85, 170];
 
 /// How long the push lasts, seconds.
 const PUSH_SECS: f32 = 0.2;
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     let arguments: Vec<String> = std::env::args().skip(1).collect();
-    let [ahead, left, file] = &arguments[..] else {
-        return Err("expected newtons ahead, newtons to the left and a file to write".into());
+    let [ahead, left, file, gait] = &arguments[..] else {
+        return Err("expected newtons ahead, newtons to the left, a file to write and a gait".into());
     };
     let force = Vec3::new(ahead.parse()?, left.parse()?, 0.0);
     let pack = Arc::new(CharacterPack::from_bytes(&std::fs::read(PACK)?)?);
     let model = Model::for_pack(&pack)?;
     let graph = pack.graph();
-    let goal = Goal::Node(graph.node_named("walk").ok_or("expected a node named walk")?);
+    let goal = Goal::Node(graph.node_named(gait).ok_or("expected a gait of the pack, such as walk")?);
     let torso = model.skeleton().body_named("torso").ok_or("expected a body named torso")?;
     let mut character = Character::new(&model);
     character.stand_at(0.0, 0.0, Heading::FORWARD, 0.0)?;

@@ -85,8 +85,8 @@ pub struct PsConfig {
     /// yet as it is asked to, with their steady variants once it has for a while, and with their resting variants where it is to
     /// go nowhere.
     pub agility: i32,
-    /// Not 0: step back with the pack's first policy that strafes when the body tips over backwards, and stand for a moment
-    /// when a push tips a gait over aside.
+    /// Not 0: step back with the pack's first policy that strafes when the body tips over backwards, and catch a push that
+    /// drives it off its course by the catching variants of its gaits.
     pub capture_steps: i32,
 }
 

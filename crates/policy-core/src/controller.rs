@@ -275,7 +275,7 @@ impl Controller {
                 let blend = self.state.fall.acting_position(report.position).blend();
                 let blend = self.state.capture_step.with_steps(self.pack.graph(), blend);
                 let shares = Shares {
-                    aside: self.state.pushed_aside,
+                    catch: self.state.catch.share,
                     rough_ground: self.state.unevenness,
                     agile: self.state.urgency,
                 };
@@ -291,7 +291,6 @@ impl Controller {
         let strafing = strafing_share(self.pack.graph(), &self.state.report.blend);
         let (target_world, facing) = match self.state.capture_step.target(state) {
             Some((target, facing)) => (Some(target), Some(facing)),
-            None if self.state.pushed_aside.stands() => (None, command.facing),
             None => (self.steered(state, self.target(state, command), strafing, dt), command.facing),
         };
         let (skeleton, clock) = (self.pack.skeleton(), self.clock());

@@ -14,10 +14,10 @@ use crate::give_way::GiveWayState;
 use crate::ids::SkillId;
 use crate::pack::CharacterPack;
 use crate::path::GraphPosition;
-use crate::pushed_aside::PushedAside;
 use crate::report::TickReport;
 use crate::state::JointTargets;
 use crate::steering::SteeringState;
+use crate::variants::Lasting;
 
 /// State of one [`Controller`](crate::Controller). Made once for a pack, then overwritten by
 /// [`Controller::save_into`](crate::Controller::save_into).
@@ -48,8 +48,8 @@ pub struct ControllerState {
     pub(crate) urgency: Urgency,
     /// How it steps under a body that tips over.
     pub(crate) capture_step: CaptureStep,
-    /// How it catches a push aside.
-    pub(crate) pushed_aside: PushedAside,
+    /// How it catches a push.
+    pub(crate) catch: Lasting,
 }
 
 /// Why a state can't be restored. The controller is unchanged.
@@ -103,7 +103,7 @@ impl ControllerState {
             unevenness: 0.0,
             urgency: Urgency::default(),
             capture_step: CaptureStep::default(),
-            pushed_aside: PushedAside::default(),
+            catch: Lasting::default(),
         }
     }
 
@@ -134,7 +134,7 @@ impl ControllerState {
         self.unevenness = other.unevenness;
         self.urgency = other.urgency;
         self.capture_step = other.capture_step;
-        self.pushed_aside = other.pushed_aside;
+        self.catch = other.catch;
     }
 
     /// Makes it the state of a new controller again.
@@ -154,7 +154,7 @@ impl ControllerState {
         self.unevenness = 0.0;
         self.urgency = Urgency::default();
         self.capture_step = CaptureStep::default();
-        self.pushed_aside = PushedAside::default();
+        self.catch = Lasting::default();
     }
 
     pub(crate) fn same_size(&self, other: &Self) -> bool {
@@ -214,7 +214,7 @@ impl ControllerState {
             .chain(urgency)
             .chain(lasting)
             .chain(&capture_step)
-            .chain([&self.pushed_aside.acts.share, &self.pushed_aside.acts.secs]);
+            .chain([&self.catch.share, &self.catch.secs]);
         let finite = numbers.all(|n| n.is_finite()) && others.all(|n| n.is_finite());
         field("numbers", "finite numbers", finite)?;
         let progress = r.skill.map_or([0.0; 2], |s| [s.seconds, s.held_seconds]);

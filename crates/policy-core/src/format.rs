@@ -196,10 +196,9 @@ pub struct PolicyEntry {
     /// Name of its turning variant; see [`Node::turning`](crate::training::Node::turning).
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub turning: Option<String>,
-    /// Names of the policies that catch a push to its left, and to its right; see
-    /// [`Node::pushed_aside`](crate::training::Node::pushed_aside).
+    /// Name of its catching variant; see [`Node::catching`](crate::training::Node::catching).
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub pushed_aside: Option<[String; 2]>,
+    pub catching: Option<String>,
     /// Where the policy comes from: recipe, samples, seed.
     #[serde(default)]
     pub origin: String,

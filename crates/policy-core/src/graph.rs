@@ -39,8 +39,8 @@ pub struct Node {
     pub stopping: Option<NodeId>,
     /// Variant of the policy that acts while a character that goes turns: from the moment in which its target lies far aside until it goes there.
     pub turning: Option<NodeId>,
-    /// Standing policies that act while a push tips the character over to its left, and to its right.
-    pub pushed_aside: Option<[NodeId; 2]>,
+    /// Variant of the policy that acts where a push drives a character that goes off its course, until it has its balance back.
+    pub catching: Option<NodeId>,
 }
 
 impl Node {
@@ -50,12 +50,11 @@ impl Node {
         self.speed_mps == Some(0.0)
     }
 
-    /// Its variants, where it has them: for rough ground, agile, steady, resting, starting, stopping, turning, pushed to its left, pushed to its right.
+    /// Its variants, where it has them: for rough ground, agile, steady, resting, starting, stopping, turning, catching.
     #[must_use]
-    pub fn variants(&self) -> [Option<NodeId>; 9] {
-        let [left, right] = self.pushed_aside.map_or([None; 2], |both| both.map(Some));
-        let Self { rough_ground, agile, steady, resting, starting, stopping, turning, .. } = *self;
-        [rough_ground, agile, steady, resting, starting, stopping, turning, left, right]
+    pub fn variants(&self) -> [Option<NodeId>; 8] {
+        let Self { rough_ground, agile, steady, resting, starting, stopping, turning, catching, .. } = *self;
+        [rough_ground, agile, steady, resting, starting, stopping, turning, catching]
     }
 }
 

@@ -75,12 +75,7 @@ impl CharacterPack {
                 starting: variant(&p.starting)?,
                 stopping: variant(&p.stopping)?,
                 turning: variant(&p.turning)?,
-                pushed_aside: match &p.pushed_aside {
-                    Some([left, right]) => {
-                        Some([find_node(field(), left, &names)?, find_node(field(), right, &names)?])
-                    }
-                    None => None,
-                },
+                catching: variant(&p.catching)?,
             })
         });
         let nodes = nodes.collect::<Result<Vec<_>, PackError>>()?;

@@ -12,13 +12,12 @@ use crate::ids::{NodeId, PolicyId, SkillId};
 use crate::mlp::MAX_LAYERS;
 use crate::pack::CharacterPack;
 use crate::path::GraphPosition;
-use crate::pushed_aside::PushedAside;
 use crate::report::{StateFault, TickReport};
 use crate::skill::{Refusal, SkillEnd, SkillProgress};
 use crate::steering::side_of;
 
 /// First four bytes: `PSS` and the version.
-const VERSION: u32 = u32::from_le_bytes(*b"PSS\x0b");
+const VERSION: u32 = u32::from_le_bytes(*b"PSS\x0c");
 
 const POSITION_LEN: usize = 2 + 2 + 4;
 const BLEND_LEN: usize = 1 + MAX_BLEND_TERMS * (2 + 4 * MAX_LAYERS);
@@ -26,7 +25,7 @@ const SKILL_LEN: usize = 3;
 const PROGRESS_LEN: usize = SKILL_LEN + 4 + 4 + 1 + 4;
 const REPORT_LEN: usize =
     2 * POSITION_LEN + BLEND_LEN + 1 + 8 + PROGRESS_LEN + 2 * SKILL_LEN + 2 * (SKILL_LEN + 1) + 3;
-const FIXED_LEN: usize = 4 + REPORT_LEN + 8 + 2 + BLEND_LEN + 4 + SKILL_LEN + 12 + 12 + 12 + 57 + 24 + 9;
+const FIXED_LEN: usize = 4 + REPORT_LEN + 8 + 2 + BLEND_LEN + 4 + SKILL_LEN + 12 + 12 + 12 + 57 + 24 + 8;
 
 impl ControllerState {
     /// Number of bytes; one for all states of a pack.
@@ -65,9 +64,7 @@ impl ControllerState {
         w.put([u8::from(turn.turns)]);
         let CaptureStep { acts, way, facing } = self.capture_step;
         w.floats(&[acts.share, acts.secs, way.x, way.y, facing.x, facing.y]);
-        let PushedAside { acts, left } = self.pushed_aside;
-        w.floats(&[acts.share, acts.secs]);
-        w.put([u8::from(left)]);
+        w.floats(&[self.catch.share, self.catch.secs]);
         debug_assert_eq!(w.at, w.out.len());
     }
 
@@ -125,8 +122,7 @@ impl ControllerState {
         (steps.acts.share, steps.acts.secs) = (r.float(), r.float());
         (steps.way.x, steps.way.y) = (r.float(), r.float());
         (steps.facing.x, steps.facing.y) = (r.float(), r.float());
-        let aside = &mut self.pushed_aside;
-        (aside.acts.share, aside.acts.secs, aside.left) = (r.float(), r.float(), r.flag()?);
+        (self.catch.share, self.catch.secs) = (r.float(), r.float());
         Ok(())
     }
 }

@@ -1,15 +1,13 @@
 //! Variants: a policy gives shares of its weight to others that were trained on from it: one for rough ground, one that sets off from a stand,
-//! one that comes to a stand, one that turns, one that does all of these and catches pushes, one that rests in a gait that moves, one that stands
+//! one that comes to a stand, one that turns, one that catches a push, one that does all of these, one that rests in a gait that moves, one that stands
 //! still or goes straight.
 //!
-//! All are of one family, so the straight lines between their parameters are good policies too. Policies that catch a push aside are not:
-//! they take all at once.
+//! All are of one family, so the straight lines between their parameters are good policies too.
 
 use crate::agility::{Urgency, steady_share};
 use crate::blend::{Blend, BlendTerm};
 use crate::graph::{Node, PolicyGraph};
 use crate::ids::{NodeId, PolicyId};
-use crate::pushed_aside::PushedAside;
 
 /// Where a value lies between two, in [0, 1].
 pub(crate) fn within(value: f32, [begins, fully]: [f32; 2]) -> f32 {
@@ -46,8 +44,8 @@ impl Lasting {
 /// How far the variants of a policy act, each in [0, 1].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Shares {
-    /// Share of the policy that catches a push aside.
-    pub(crate) aside: PushedAside,
+    /// Share of the catching variant.
+    pub(crate) catch: f32,
     /// Share of the variant for rough ground in what that leaves.
     pub(crate) rough_ground: f32,
     /// Share of the starting variant in what the one for rough ground leaves, then of the stopping and of the turning one, then of the agile one:
@@ -61,14 +59,12 @@ pub(crate) type Variant = fn(&Node) -> Option<NodeId>;
 
 /// The blend with a share of each policy given to its variants, where it has them.
 pub(crate) fn with_variants(graph: &PolicyGraph, blend: Blend, shares: Shares) -> Blend {
-    if shares.rough_ground <= 0.0 && shares.agile == Urgency::default() && shares.aside.acts.share <= 0.0 {
+    if shares.rough_ground <= 0.0 && shares.agile == Urgency::default() && shares.catch <= 0.0 {
         return blend;
     }
     let mut shared = Blend::default();
     for term in blend.terms() {
         let node = graph.nodes().get(term.policy.index());
-        let caught = node.and_then(|node| node.pushed_aside);
-        let caught = caught.map(|both| (PolicyId::from(shares.aside.of(both)), shares.aside.acts.share));
         let stands = node.is_some_and(Node::stands);
         let rests = node.is_some_and(|node| node.resting.is_some());
         let Urgency { to_move, to_rest, to_stand, at_rest, as_asked, start, stop, turn, .. } = shares.agile;
@@ -79,7 +75,8 @@ pub(crate) fn with_variants(graph: &PolicyGraph, blend: Blend, shares: Shares) -
         };
         let steadily = steady_share(if stands { at_rest } else { as_asked });
         // Each has a share of what those before it leave.
-        let takers: [(Variant, f32); 7] = [
+        let takers: [(Variant, f32); 8] = [
+            (|node| node.catching, shares.catch),
             (|node| node.rough_ground, shares.rough_ground),
             (|node| node.starting, start.share),
             (|node| node.stopping, stop.share),
@@ -88,14 +85,14 @@ pub(crate) fn with_variants(graph: &PolicyGraph, blend: Blend, shares: Shares) -
             (|node| node.resting, to_rest),
             (|node| node.steady, steadily),
         ];
-        let mut left = 1.0 - caught.map_or(0.0, |(_, share)| share);
+        let mut left = 1.0;
         let variants = takers.map(|(variant, share)| {
             let variant = node.and_then(variant)?;
             let taken = left * share;
             left -= taken;
             Some((PolicyId::from(variant), taken))
         });
-        let parts = [Some((term.policy, left)), caught].into_iter().chain(variants);
+        let parts = core::iter::once(Some((term.policy, left))).chain(variants);
         for (policy, share) in parts.flatten().filter(|(_, share)| *share > 0.0) {
             let weights = term.weights.map(|weight| share * weight);
             if shared.add(BlendTerm { policy, weights }).is_err() {

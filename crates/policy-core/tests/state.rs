@@ -99,12 +99,15 @@ fn bad_bytes_are_refused_and_leave_a_new_state() {
     assert!(matches!(refused(&|b| b[3] ^= 0x80), StateError::Version { .. }));
     assert!(matches!(refused(&|b| b[4] = 200), StateError::Field { field: "position", .. }));
     let numbers = |b: &mut Vec<u8>| {
-        // Behind the last number lies a flag.
-        let at = b.len() - 5;
+        let at = b.len() - 4;
         b[at..at + 4].copy_from_slice(&f32::NAN.to_le_bytes());
     };
     assert!(matches!(refused(&numbers), StateError::Field { field: "numbers", .. }));
-    let flag = |b: &mut Vec<u8>| *b.last_mut().unwrap() = 2;
+    // Behind the flag of a turn lie the eight numbers of a capture step and of a catch.
+    let flag = |b: &mut Vec<u8>| {
+        let at = b.len() - 8 * 4 - 1;
+        b[at] = 2;
+    };
     assert!(matches!(refused(&flag), StateError::Field { field: "a flag", .. }));
 }
 

@@ -11,12 +11,10 @@ use policy_core::training::{ActionScaling, Layer, MlpError, PackTensors};
 use policy_core::{CharacterPack, Mlp, PackError};
 
 mod distil;
-mod mirror;
 mod plan;
 mod rollouts;
 
 pub use distil::{Agreement, DISTILLED_HIDDEN, distil};
-use mirror::mirrored;
 pub use plan::{PackPlan, PlannedPolicy};
 
 use crate::checkpoint::{ACTOR, Checkpoint, CheckpointError, DISCRIMINATOR, EMA};
@@ -55,14 +53,6 @@ pub enum BindError {
         role: &'static str,
         /// What is wrong with it.
         source: MlpError,
-    },
-    /// A body has no mirror image.
-    #[error("mirror image {skill}: {message}")]
-    Mirror {
-        /// Name of the image.
-        skill: String,
-        /// What was expected and found.
-        message: String,
     },
     /// The parts don't fit together.
     #[error(transparent)]
@@ -114,24 +104,6 @@ impl TrainedSkill {
     /// When its checkpoint is missing or wrong.
     pub fn load(skill: &str, checkpoint: &Path) -> Result<Self, CheckpointError> {
         Self::from_checkpoint(skill, &Checkpoint::load(checkpoint)?, checkpoint)
-    }
-
-    /// The mirror image of the skill's policy, under a name of its own: what the policy does to the right, it does to the left.
-    ///
-    /// # Errors
-    /// When the body of `model` has no mirror image.
-    pub fn mirror_image(
-        &self,
-        name: &str,
-        normalisers: &Normalisers,
-        model: &Model,
-    ) -> Result<Self, BindError> {
-        let skeleton = model.skeleton();
-        let scaling = ActionScaling::from_skeleton(skeleton);
-        let actor = mirrored(&self.actor, skeleton, &normalisers.observation, &scaling)
-            .map_err(|message| BindError::Mirror { skill: name.into(), message })?;
-        let origin = format!("mirror image of {}", self.origin);
-        Ok(Self { skill: name.into(), actor, origin, ..self.clone() })
     }
 
     /// True when a checkpoint is of a run that trained this skill together with others.
@@ -215,7 +187,7 @@ fn policies(plan: &PackPlan, trained: &[TrainedSkill]) -> Result<(Vec<Mlp>, Vec<
             starting: planned.starting.clone(),
             stopping: planned.stopping.clone(),
             turning: planned.turning.clone(),
-            pushed_aside: planned.pushed_aside.clone(),
+            catching: planned.catching.clone(),
             origin: skill.origin.clone(),
         });
     }

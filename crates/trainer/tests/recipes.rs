@@ -96,13 +96,9 @@ fn every_recipe_runs_and_binds_into_a_pack() {
 
     let plan = PackPlan::load(&project().join("assets/recipes/pack/humanoid.toml")).unwrap();
     for planned in &plan.policies {
-        let PlannedPolicy { name, skill, mirror_of, .. } = planned;
-        let Some(other) = skill.as_ref().or(mirror_of.as_ref()) else { continue };
-        let other = skills.iter().find(|trained| trained.skill == *other).unwrap();
-        skills.push(match mirror_of {
-            Some(_) => other.mirror_image(name, &normalisers, &model).unwrap(),
-            None => TrainedSkill { skill: name.clone(), ..other.clone() },
-        });
+        let PlannedPolicy { name, skill: Some(skill), .. } = planned else { continue };
+        let other = skills.iter().find(|trained| trained.skill == *skill).unwrap();
+        skills.push(TrainedSkill { skill: name.clone(), ..other.clone() });
     }
     let bytes = bind(&plan, &skills, &normalisers, &model, None).unwrap().to_bytes();
     let pack = Arc::new(CharacterPack::from_bytes(&bytes).unwrap());

@@ -113,7 +113,7 @@ fn policy_entry(name: &str, sizes: &[usize]) -> PolicyEntry {
         starting: None,
         stopping: None,
         turning: None,
-        pushed_aside: None,
+        catching: None,
         origin: "made up".into(),
     }
 }

@@ -41,8 +41,8 @@ pub struct ControllerConfig {
     /// variants once it has for a while, and with their resting variants where it is to go nowhere, the default; where the pack has none,
     /// nothing changes.
     pub agility: bool,
-    /// Step back with the pack's first policy that strafes when the body tips over backwards, and stand for a moment when a push tips a gait
-    /// over aside, the default; where the pack has no policies for it, nothing changes.
+    /// Step back with the pack's first policy that strafes when the body tips over backwards, and catch a push that drives it off its course
+    /// by the catching variants of its gaits, the default; where the pack has no policies for it, nothing changes.
     pub capture_steps: bool,
 }
 

@@ -6,12 +6,12 @@ use super::Controller;
 use crate::agility::{OnGraph, Urgency};
 use crate::balance::comes_to_rest;
 use crate::capture_step::CaptureStep;
+use crate::catching::{Calm, next_catch};
 use crate::command::Command;
 use crate::fall::{Heights, step_heights};
 use crate::give_way::GiveWayState;
 use crate::ids::NodeId;
 use crate::path::GraphPosition;
-use crate::pushed_aside::PushedAside;
 use crate::report::TickReport;
 use crate::state::CharacterState;
 use crate::steering::SteeringState;
@@ -113,23 +113,27 @@ impl Controller {
         }
     }
 
-    /// Steps under a body that tips over backwards, and stands where a push tips it over to a side.
+    /// Steps under a body that tips over backwards, and catches a push off its course.
     pub(super) fn keep_balance(&mut self, state: &CharacterState, command: &Command, dt: f32) {
         let report = &self.state.report;
         // Skills, falls and blends chosen by hand are none of its business.
         let acts =
             self.config.capture_steps && report.skill.is_none() && !report.fallen && command.blend.is_none();
-        let place = (self.pack.graph(), report.position);
-        (self.state.capture_step, self.state.pushed_aside) = match acts {
+        let (graph, skeleton) = (self.pack.graph(), self.pack.skeleton());
+        let TickReport { position, goal, .. } = *report;
+        let place = OnGraph { graph, position, goal };
+        (self.state.capture_step, self.state.catch) = match acts {
             true => {
-                let at = comes_to_rest(self.pack.skeleton(), state);
-                let calm = (self.state.urgency.at_pace, self.state.unevenness);
+                let at = comes_to_rest(skeleton, state);
+                let urgency = &self.state.urgency;
+                let (at_pace, turns) = (urgency.at_pace, urgency.turn.turns);
+                let calm = Calm { at_pace, turns, unevenness: self.state.unevenness };
                 (
-                    self.state.capture_step.next(place, (state, at), command.target, dt),
-                    self.state.pushed_aside.next(place, at, calm, dt),
+                    self.state.capture_step.next((graph, position), (state, at), command.target, dt),
+                    next_catch(self.state.catch, place, (skeleton, state), command.target, calm, dt),
                 )
             }
-            false => (CaptureStep::default(), PushedAside::default()),
+            false => (CaptureStep::default(), Lasting::default()),
         };
     }
 

@@ -132,7 +132,7 @@ pub fn manifest() -> Manifest {
         starting: None,
         stopping: None,
         turning: None,
-        pushed_aside: None,
+        catching: None,
         origin: "made up".into(),
     };
     let edge = |a: &str, b: &str| EdgeEntry {

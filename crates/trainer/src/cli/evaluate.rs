@@ -59,7 +59,7 @@ pub(crate) struct Arguments {
     /// Leave agile variants out: gaits turn, start and stop by themselves.
     #[arg(long)]
     no_agility: bool,
-    /// Leave capture steps out: a character that tips over backwards goes on in its gait.
+    /// Leave capture steps and catches out: a character that is pushed goes on in its gait.
     #[arg(long)]
     no_capture_steps: bool,
     /// Seconds in which the player's controller passes from the joint targets before a skill to those of the skill.

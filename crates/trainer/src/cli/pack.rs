@@ -61,17 +61,7 @@ pub(crate) fn run(
     let joint = plan.joint.as_ref().map(|run| newest(run)).transpose()?.flatten();
     let together = |skill: &str| joint.as_ref().filter(|(loaded, _)| TrainedSkill::is_in(skill, loaded));
     let mut trained: Vec<TrainedSkill> = Vec::new();
-    for PlannedPolicy { name, from, skill, mirror_of, .. } in &plan.policies {
-        if let Some(original) = mirror_of {
-            let image = trained.iter().find(|t| t.skill == *original);
-            let image = image.map(|t| t.mirror_image(name, normalisers, model)).transpose()?;
-            ensure!(
-                a.partial || image.is_some(),
-                "{name}: expected the mirror image of a policy further up in the plan, found {original:?}"
-            );
-            trained.extend(image);
-            continue;
-        }
+    for PlannedPolicy { name, from, skill, .. } in &plan.policies {
         let skill = skill.as_ref().unwrap_or(name);
         let of_run = match (from, together(skill)) {
             (None, Some((loaded, path))) => Some(TrainedSkill::from_checkpoint(skill, loaded, path)?),

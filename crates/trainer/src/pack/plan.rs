@@ -61,9 +61,6 @@ pub struct PlannedPolicy {
     /// Skill of the run that the policy is of, where that is not its name.
     #[serde(default)]
     pub skill: Option<String>,
-    /// Policy, further up in the plan, whose mirror image it is. It is not trained.
-    #[serde(default)]
-    pub mirror_of: Option<String>,
     /// Name of its variant for rough ground.
     #[serde(default)]
     pub rough_ground: Option<String>,
@@ -85,9 +82,9 @@ pub struct PlannedPolicy {
     /// Name of its turning variant.
     #[serde(default)]
     pub turning: Option<String>,
-    /// Names of the policies that catch a push to its left, and to its right.
+    /// Name of its catching variant.
     #[serde(default)]
-    pub pushed_aside: Option<[String; 2]>,
+    pub catching: Option<String>,
 }
 
 impl PackPlan {
@@ -108,13 +105,20 @@ impl PackPlan {
     pub fn only(mut self, trained: impl Fn(&str) -> bool) -> Self {
         self.policies.retain(|p| trained(&p.name));
         for policy in &mut self.policies {
-            let PlannedPolicy { rough_ground, agile, steady, resting, starting, stopping, turning, .. } =
-                policy;
-            for variant in [rough_ground, agile, steady, resting, starting, stopping, turning] {
+            let PlannedPolicy {
+                rough_ground,
+                agile,
+                steady,
+                resting,
+                starting,
+                stopping,
+                turning,
+                catching,
+                ..
+            } = policy;
+            for variant in [rough_ground, agile, steady, resting, starting, stopping, turning, catching] {
                 *variant = variant.take().filter(|name| trained(name));
             }
-            let both = policy.pushed_aside.take();
-            policy.pushed_aside = both.filter(|names| names.iter().all(|name| trained(name)));
         }
         self.edges.retain(|e| e.nodes.iter().all(|n| trained(n)));
         let edges = self.edges.clone();

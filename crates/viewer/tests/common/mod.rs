@@ -141,7 +141,7 @@ pub fn quadruped() -> CharacterPack {
         starting: None,
         stopping: None,
         turning: None,
-        pushed_aside: None,
+        catching: None,
         origin: "made up".into(),
     };
     let manifest = Manifest {

@@ -84,7 +84,7 @@ pub(super) fn policy_graph(
         starting: None,
         stopping: None,
         turning: None,
-        pushed_aside: None,
+        catching: None,
     };
     let policies = vec![policy; nodes.len()];
     PolicyGraph::from_parts(nodes.iter().map(known).collect(), &edges, paths, &policies)
