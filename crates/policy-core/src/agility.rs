@@ -66,6 +66,12 @@ impl OnGraph<'_> {
         acting.iter().all(|node| variant(self.graph.node(*node)).is_some())
     }
 
+    /// Speed of a variant of the nearest gait, metres per second, where it has one.
+    pub(crate) fn variant_mps(&self, variant: Variant) -> Option<f32> {
+        let variant = variant(self.graph.node(self.position.nearest_node()))?;
+        self.graph.node(variant).speed_mps
+    }
+
     /// On an edge that is only crossed.
     pub(crate) fn crosses(&self) -> bool {
         self.graph.edge_at(self.position).is_some_and(|edge| edge.transit)

@@ -27,6 +27,14 @@ pub(crate) fn is_balanced(skeleton: &Skeleton, state: &CharacterState) -> bool {
     comes_to_rest(skeleton, state).is_none_or(|at| at.y.abs() < ASIDE && at.x > -BEHIND && at.x < AHEAD)
 }
 
+/// Velocity of the trunk, metres per second: the mean of root and head. A push on the trunk moves the head first, one on the hips the root. A
+/// skeleton without a head has the root's alone.
+pub(crate) fn trunk_velocity(skeleton: &Skeleton, state: &CharacterState) -> Vec3 {
+    let root = state.root().linear_velocity;
+    let head = skeleton.head().map_or(root, |head| state.body(head).linear_velocity);
+    0.5 * (root + head)
+}
+
 /// Where a body comes to rest from the middle of its ankles, along its heading and to the left, as shares of its height above them.
 ///
 /// What it weighs is not known here: the centre of mass is taken to be half-way from the root to the head.
@@ -35,7 +43,7 @@ pub(crate) fn comes_to_rest(skeleton: &Skeleton, state: &CharacterState) -> Opti
     let feet = Some(skeleton.feet()).filter(|feet| !feet.is_empty())?;
     let ankles = feet.iter().map(|foot| state.body(*foot).position).sum::<Vec3>() / feet.len() as f32;
     let centre = 0.5 * (root.position + head.position) - ankles;
-    let velocity = 0.5 * (root.linear_velocity + head.linear_velocity);
+    let velocity = trunk_velocity(skeleton, state);
     let height = centre.z.max(LEAST_HEIGHT);
     let at = centre.truncate() + velocity.truncate() * libm::sqrtf(height / GRAVITY);
     Some(Heading::from_rotation(root.rotation).heading_from_world_2d(at / height))

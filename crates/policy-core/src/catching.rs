@@ -6,7 +6,8 @@
 
 use glam::Vec2;
 
-use crate::agility::{OnGraph, moving_mps};
+use crate::agility::{OnGraph, Urgency, moving_mps};
+use crate::balance::trunk_velocity;
 use crate::skeleton::Skeleton;
 use crate::state::CharacterState;
 use crate::variants::Lasting;
@@ -24,43 +25,29 @@ const SETTLES_SECS: f32 = 0.6;
 /// Time from a gait to its catching variant, and back, seconds. The first is no longer than a tick.
 const CROSS_SECS: [f32; 2] = [0.03, 0.2];
 
-/// What decides whether a push is caught, beside what the body does.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Calm {
-    /// See [`Urgency::at_pace`](crate::agility::Urgency::at_pace): before that a gait gathers speed, or brakes, by itself.
-    pub(crate) at_pace: f32,
-    /// Whether it turns: there a body leans, and its way is none that a push took it to.
-    pub(crate) turns: bool,
-    /// How uneven the ground is, in [0, 1]: a catching variant has learned level ground alone.
-    pub(crate) unevenness: f32,
-}
-
-/// What a catch is after a tick of `dt` seconds. All gaits that act must have a catching variant.
+/// What a catch is after a tick of `dt` seconds. All gaits that act must have a catching variant, which has learned level ground alone: `unevenness`
+/// is that of the ground, in [0, 1]. In a turn a body leans, and before it goes at its pace it gathers speed, or brakes, by itself.
 pub(crate) fn next_catch(
     catch: Lasting,
     place: OnGraph<'_>,
     (skeleton, state): (&Skeleton, &CharacterState),
     target: Option<Vec2>,
-    calm: Calm,
+    urgency: &Urgency,
+    unevenness: f32,
     dt: f32,
 ) -> Lasting {
-    let can_catch = place.all_have(|node| node.catching) && !calm.turns && !place.crosses();
+    let can_catch = place.all_have(|node| node.catching) && !urgency.turn.turns && !place.crosses();
     let (Some(target), Some(speed), true) = (target, moving_mps(place.graph, place.position), can_catch)
     else {
         return Lasting::default();
     };
-    let root = state.root();
-    // A push on the trunk moves the head first, one on the hips the root.
-    let head = skeleton.head().map_or(root.linear_velocity, |head| state.body(head).linear_velocity);
-    let velocity = 0.5 * (root.linear_velocity + head).truncate();
-    let way = (target - root.position.truncate()).normalize_or_zero();
-    let acts_already = catch.share > 0.0;
-    let variant = place.graph.node(place.position.nearest_node()).catching;
-    let own_speed = variant.and_then(|variant| place.graph.node(variant).speed_mps);
+    let velocity = trunk_velocity(skeleton, state).truncate();
+    let way = (target - state.root().position.truncate()).normalize_or_zero();
     // The variant goes at a speed of its own: no push has given the body that.
-    let pace = own_speed.map_or(speed, |own| speed.max(own));
+    let pace = place.variant_mps(|node| node.catching).map_or(speed, |own| speed.max(own));
     let most = PUSHED_MPS + PUSHED_SHARE * speed;
     let is_off = velocity.perp_dot(way).abs() > most || velocity.dot(way) - pace > most;
-    let can_begin = calm.at_pace >= 1.0 && calm.unevenness < MOST_UNEVENNESS;
+    let acts_already = catch.share > 0.0;
+    let can_begin = urgency.at_pace >= 1.0 && unevenness < MOST_UNEVENNESS;
     catch.next(is_off && (can_begin || acts_already), SETTLES_SECS, CROSS_SECS, dt)
 }

@@ -46,13 +46,11 @@ pub(crate) fn next_start(
         None if at_rest >= STOOD => START_SECS,
         None => left,
         Some(target) => {
-            let graph = place.graph;
-            let variant = graph.node(place.position.nearest_node()).starting;
-            let speed = variant.and_then(|variant| graph.node(variant).speed_mps);
+            let speed = place.variant_mps(|node| node.starting);
             let along =
                 root.linear_velocity.truncate().dot((target - root.position.truncate()).normalize_or_zero());
             let goes_on = |speed: f32| {
-                along < speed && moving_mps(graph, place.goal).is_some_and(|asked| asked >= speed)
+                along < speed && moving_mps(place.graph, place.goal).is_some_and(|asked| asked >= speed)
             };
             if speed.is_some_and(goes_on) { left } else { 0.0 }
         }

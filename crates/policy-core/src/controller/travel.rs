@@ -6,7 +6,7 @@ use super::Controller;
 use crate::agility::{OnGraph, Urgency};
 use crate::balance::comes_to_rest;
 use crate::capture_step::CaptureStep;
-use crate::catching::{Calm, next_catch};
+use crate::catching::next_catch;
 use crate::command::Command;
 use crate::fall::{Heights, step_heights};
 use crate::give_way::GiveWayState;
@@ -125,12 +125,11 @@ impl Controller {
         (self.state.capture_step, self.state.catch) = match acts {
             true => {
                 let at = comes_to_rest(skeleton, state);
-                let urgency = &self.state.urgency;
-                let (at_pace, turns) = (urgency.at_pace, urgency.turn.turns);
-                let calm = Calm { at_pace, turns, unevenness: self.state.unevenness };
+                let target = command.target;
+                let (urgency, unevenness) = (&self.state.urgency, self.state.unevenness);
                 (
-                    self.state.capture_step.next((graph, position), (state, at), command.target, dt),
-                    next_catch(self.state.catch, place, (skeleton, state), command.target, calm, dt),
+                    self.state.capture_step.next((graph, position), (state, at), target, dt),
+                    next_catch(self.state.catch, place, (skeleton, state), target, urgency, unevenness, dt),
                 )
             }
             false => (CaptureStep::default(), Lasting::default()),
