@@ -73,7 +73,7 @@ const STOPS_SECS: f32 = 0.07;
 /// Shortest time on the way to a start in the middle of a stride, seconds: so long a run takes to begin.
 const STRIDE_SECS: f32 = 1.2;
 
-/// Time from the begin of a push to a start that catches it, seconds: a game takes it for one once the body tips over.
+/// Time from the beginning of a push to a start that catches it, seconds: a game takes it for one once the body tips over.
 const PUSHED_SECS: [f32; 2] = [0.07, 0.2];
 
 /// Smallest force of such a push, as a share of the largest.
