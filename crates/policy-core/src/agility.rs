@@ -34,8 +34,11 @@ pub const BRAKING_METRES: f32 = 1.0;
 /// Time from a gait to its variant, and back, seconds.
 const CROSS_SECS: [f32; 2] = [0.1, 0.3];
 
-/// Time in which a character becomes steady, and in which that is over, seconds.
-const STEADY_SECS: [f32; 2] = [1.6, 0.06];
+/// Time in which a character that stands becomes steady, and in which that is over, seconds.
+const AT_REST_SECS: [f32; 2] = [1.6, 0.06];
+
+/// The same for one that goes as it is asked to.
+const AS_ASKED_SECS: [f32; 2] = [0.8, 0.06];
 
 /// Time from a gait that moves to its resting variant, and back, seconds.
 const REST_SECS: [f32; 2] = [0.1, 0.1];
@@ -89,7 +92,7 @@ pub(crate) struct Urgency {
     pub(crate) to_stand: f32,
     /// How long it has stood still, 1 from 1.6 s on: see [`steady_share`].
     pub(crate) at_rest: f32,
-    /// How long it has gone as it is asked to, in the same measure.
+    /// How long it has gone as it is asked to, 1 from 0.8 s on.
     pub(crate) as_asked: f32,
     /// How long it has gone no faster than its place on the graph asks for, 1 from 0.3 s on; kept while it stays there, and forgotten once it
     /// leaves. From then on a faster one has been pushed.
@@ -166,8 +169,8 @@ impl Urgency {
             to_move: follow(self.to_move, now.to_move, CROSS_SECS),
             to_rest: follow(self.to_rest, now.to_rest, REST_SECS),
             to_stand: follow(self.to_stand, now.to_stand, CROSS_SECS),
-            at_rest: follow(self.at_rest, now.at_rest, STEADY_SECS),
-            as_asked: follow(self.as_asked, now.as_asked, STEADY_SECS),
+            at_rest: follow(self.at_rest, now.at_rest, AT_REST_SECS),
+            as_asked: follow(self.as_asked, now.as_asked, AS_ASKED_SECS),
             // A body that turns leans: no push has tipped it over.
             at_pace: if turn.share > 0.0 { 0.0 } else { now.at_pace },
             start,
