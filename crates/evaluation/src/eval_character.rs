@@ -72,8 +72,12 @@ impl EvalCharacter {
         self.controller.reset();
         let node = self.controller.report().position.nearest_node();
         let stands = self.controller.pack().graph().node(node).stands();
-        let speed = if stands { 0.0 } else { WALKING_START_MPS };
-        self.character.stand_at(0.0, 0.0, heading, speed).expect("zeros are finite");
+        self.set_down(heading, if stands { 0.0 } else { WALKING_START_MPS });
+    }
+
+    /// The body upright at the origin, at a speed in metres per second. The controller goes on.
+    pub fn set_down(&mut self, heading: Heading, speed: f32) {
+        self.character.stand_at(0.0, 0.0, heading, speed).expect("finite numbers");
         self.character.sense_into(&mut self.state);
     }
 

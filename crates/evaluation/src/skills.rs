@@ -4,6 +4,8 @@ use std::sync::Arc;
 
 use glam::Vec2;
 use physics::{Model, PhysicsCharacter};
+use policy_core::contract::WALKING_START_MPS;
+use policy_core::training::TARGET_RANGE_METRES;
 use policy_core::{BodyId, CharacterPack, CharacterState, Command, Heading, Skeleton, SkillEnd, SkillId};
 use random::Rng;
 use random::limp::drop_limp;
@@ -18,6 +20,9 @@ const GET_UP_SECS: f32 = 5.0;
 
 /// Seconds within which an episodic skill must be over.
 const SKILL_SECS: f32 = 3.0;
+
+/// The directions of the tries differ from straight ahead by at most this, radians.
+const ASIDE: f32 = 0.52;
 
 /// Body whose x axis tells which way a lying character faces; the root where there is none.
 const FACING: &str = "torso";
@@ -180,8 +185,9 @@ pub fn watch_skill(
     states
 }
 
-/// Tries of an episodic skill out of the node it returns to, straight ahead or standing, that end within 3 s as they are meant to, and
-/// after which the character is still up a second later.
+/// Tries of an episodic skill out of the node it returns to, walking or standing, that end within 3 s as they are meant to, and after which
+/// the character is still up a second later. Each is set down at another speed and goes in another direction, up to 30 degrees aside, for
+/// 2 to 5 s beforehand.
 ///
 /// # Panics
 /// When the pack has no such skill.
@@ -221,11 +227,14 @@ fn comes_back(
     let back = pack.skills()[skill.index()].returns_to;
     let mut eval = EvalCharacter::new(model, pack, &pack.graph().node(back).name);
     let mut rng = Rng::new(seed, 13);
-    let start = ((SETTLE_SECS + rng.range(0.0, 1.0)) / TICK_SECS) as u32;
+    let start = ((SETTLE_SECS + rng.range(0.0, 3.0)) / TICK_SECS) as u32;
+    let aside = Vec2::from_angle(rng.range(-ASIDE, ASIDE));
+    eval.set_down(Heading::FORWARD, rng.range(0.0, WALKING_START_MPS));
     let (mut ended, mut limbs) = (None, Limbs::default());
     let hands = hands(pack.skeleton());
     for tick in 0..start + ((SKILL_SECS + 1.0) / TICK_SECS) as u32 {
-        let command = Command { skill: (tick == start).then_some(skill), ..eval.ahead(back) };
+        let target = eval.ahead(back).target.map(|_| eval.position() + TARGET_RANGE_METRES * aside);
+        let command = Command { skill: (tick == start).then_some(skill), target, ..eval.ahead(back) };
         if !eval.tick(&command) || (tick < start && eval.controller.report().fallen) {
             return (false, ended, limbs);
         }

@@ -27,7 +27,8 @@ impl Workspace {
         Ok(Some(Controller::with_config(pack, config)))
     }
 
-    /// A pack of the trained skills of a plan; one that is needed and not trained is an error, which names `needed_by`.
+    /// A pack of the trained skills of a plan, each from the run that the plan takes it from, or from its own where that one is not trained;
+    /// one that is needed and not trained is an error, which names `needed_by`.
     pub(super) fn pack_of(
         &self,
         plan: PackPlan,
@@ -36,8 +37,9 @@ impl Workspace {
     ) -> Result<Arc<CharacterPack>> {
         ensure!(!plan.policies.is_empty(), "{needed_by}: expected policies in {PLAN}, found none");
         let mut trained = Vec::new();
-        for PlannedPolicy { name, .. } in &plan.policies {
-            match self.trained(name)? {
+        for PlannedPolicy { name, from, .. } in &plan.policies {
+            let of_pack = from.as_ref().map(|run| self.trained(run)).transpose()?.flatten();
+            match of_pack.map_or_else(|| self.trained(name), |found| Ok(Some(found)))? {
                 Some((checkpoint, path)) => {
                     trained.push(TrainedSkill::from_checkpoint(name, &checkpoint, &path)?);
                 }
@@ -46,5 +48,53 @@ impl Workspace {
         }
         let plan = plan.only(|name| trained.iter().any(|skill| skill.skill == name));
         Ok(Arc::new(bind(&plan, &trained, &self.normalisers, &self.model, None)?))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::path::{Path, PathBuf};
+
+    use clips::ClipFolder;
+    use physics_bridge::Model;
+
+    use super::*;
+    use crate::normaliser_file;
+
+    fn workspace(folder: &Path) -> Workspace {
+        let assets = PathBuf::from(concat!(env!("CARGO_MANIFEST_DIR"), "/../../assets"));
+        let (model, kept) = (Model::load(assets.join("humanoid.xml")).unwrap(), folder.join("kept"));
+        let normaliser = assets.join("checkpoints/normaliser.safetensors");
+        Workspace {
+            recipes: assets.join("recipes"),
+            runs: folder.join("runs"),
+            kept,
+            clips: ClipFolder::from_argument(Some(folder.to_owned())).unwrap(),
+            normalisers: normaliser_file::load(&normaliser, model.skeleton()).unwrap(),
+            model,
+            parents: None,
+        }
+    }
+
+    #[test]
+    fn the_run_that_is_met_is_that_of_the_pack() {
+        let folder = tempfile::tempdir().unwrap();
+        let workspace = workspace(folder.path());
+        std::fs::create_dir(&workspace.kept).unwrap();
+        let assets = concat!(env!("CARGO_MANIFEST_DIR"), "/../../assets/checkpoints");
+        let copy = |name: &str| {
+            let file = format!("{name}.safetensors");
+            std::fs::copy(Path::new(assets).join(&file), workspace.kept.join(&file)).unwrap();
+        };
+        let recipe = workspace.recipe("walk_catch").unwrap();
+        let run = || {
+            let pack = workspace.company(&recipe).unwrap().unwrap().pack().clone();
+            pack.policies()[pack.policy_named("run").unwrap().index()].clone()
+        };
+        copy("locomotion");
+        let together = run();
+        copy("run_steady");
+        let of_pack = run();
+        assert!(together.squared_distance(&of_pack) > 0.0, "the plan takes Run from elsewhere");
     }
 }
