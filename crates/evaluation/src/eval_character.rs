@@ -37,7 +37,17 @@ impl EvalCharacter {
     #[must_use]
     pub fn new(model: &Model, pack: &Arc<CharacterPack>, start: &str) -> Self {
         let start = pack.graph().node_named(start).unwrap_or_default();
-        let config = ControllerConfig { auto_recover: false, start, ..ControllerConfig::unassisted() };
+        Self::with_config(model, pack, ControllerConfig { start, ..ControllerConfig::unassisted() })
+    }
+
+    /// As [`EvalCharacter::new`] from a node, under the controller of a player: it does all that it does in a game but get up by itself.
+    #[must_use]
+    pub fn of_player(model: &Model, pack: &Arc<CharacterPack>, start: NodeId) -> Self {
+        Self::with_config(model, pack, ControllerConfig { start, ..ControllerConfig::default() })
+    }
+
+    fn with_config(model: &Model, pack: &Arc<CharacterPack>, config: ControllerConfig) -> Self {
+        let config = ControllerConfig { auto_recover: false, ..config };
         let mut eval = Self {
             character: Character::new(model),
             controller: Controller::with_config(pack.clone(), config),

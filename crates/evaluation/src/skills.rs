@@ -185,9 +185,9 @@ pub fn watch_skill(
     states
 }
 
-/// Tries of an episodic skill out of the node it returns to, walking or standing, that end within 3 s as they are meant to, and after which
-/// the character is still up a second later. Each is set down at another speed and goes in another direction, up to 30 degrees aside, for
-/// 2 to 5 s beforehand.
+/// Tries of an episodic skill under a player's controller, out of the node it returns to, walking or standing, that end within 3 s as they are
+/// meant to, and after which the character is still up a second later. Each is set down at another speed and goes in another direction, up
+/// to 30 degrees aside, for 2 to 5 s beforehand.
 ///
 /// # Panics
 /// When the pack has no such skill.
@@ -225,7 +225,7 @@ fn comes_back(
     seed: u64,
 ) -> (bool, Option<f32>, Limbs) {
     let back = pack.skills()[skill.index()].returns_to;
-    let mut eval = EvalCharacter::new(model, pack, &pack.graph().node(back).name);
+    let mut eval = EvalCharacter::of_player(model, pack, back);
     let mut rng = Rng::new(seed, 13);
     let start = ((SETTLE_SECS + rng.range(0.0, 3.0)) / TICK_SECS) as u32;
     let aside = Vec2::from_angle(rng.range(-ASIDE, ASIDE));

@@ -1,5 +1,5 @@
 //! Catches: where a push drives a character that goes off its course, or beyond its speed, its gaits give all of their weight to their catching
-//! variant for a moment.
+//! variant for a moment. So they do where it goes on out of a skill, until it has settled.
 //!
 //! A gait that is pushed goes on putting one foot before the other. One policy that has learned to take over in the middle of a push steps
 //! wherever the body needs a foot, and goes on towards the target meanwhile.
@@ -24,6 +24,14 @@ const SETTLES_SECS: f32 = 0.6;
 
 /// Time from a gait to its catching variant, and back, seconds. The first is no longer than a tick.
 const CROSS_SECS: [f32; 2] = [0.03, 0.2];
+
+/// A catch, or one that lasts until a character has settled after a skill: it is not in balance yet where it goes on.
+pub(crate) fn out_of_skill(catch: Lasting, settle_secs: f32, unevenness: f32) -> Lasting {
+    match settle_secs > 0.0 && unevenness < MOST_UNEVENNESS {
+        true => Lasting { share: 1.0, secs: settle_secs },
+        false => catch,
+    }
+}
 
 /// What a catch is after a tick of `dt` seconds. All gaits that act must have a catching variant, which has learned level ground alone: `unevenness`
 /// is that of the ground, in [0, 1]. In a turn a body leans, and before it goes at its pace it gathers speed, or brakes, by itself.

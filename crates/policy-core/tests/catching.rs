@@ -153,3 +153,34 @@ fn a_saved_state_goes_on_with_its_catch() {
         assert_eq!(controller.report(), other.report());
     }
 }
+
+#[test]
+fn a_character_that_goes_on_out_of_a_skill_catches_itself_until_it_has_settled() {
+    let after_a_roll = |capture_steps: bool, target: Option<Vec2>, rise: f32| {
+        let config = ControllerConfig { capture_steps, start: n(1), ..ControllerConfig::default() };
+        let mut controller = Controller::with_config(pack(), config);
+        let mut state = moving(Vec3::X);
+        state.ground_rises[Skeleton::humanoid().feet()[0].index()] = rise;
+        let command = Command { goal: Goal::Node(n(1)), target, ..Command::default() };
+        let roll = controller.pack().skill_named("roll");
+        controller.tick(&state, &Command { skill: roll, ..command }, DT);
+        assert_eq!(controller.report().skill_started, roll);
+        while controller.report().skill_ended.is_none() {
+            controller.tick(&state, &command, DT);
+        }
+        let shares = (0..30).map(|_| {
+            controller.tick(&state, &command, DT);
+            weight_of(&controller, CATCHES)
+        });
+        shares.collect::<Vec<_>>()
+    };
+    let ahead = Some(Vec2::X * 10.0);
+    let shares = after_a_roll(true, ahead, 0.0);
+    let caught = shares.iter().take_while(|share| **share == 1.0).count();
+    assert!((13..=16).contains(&caught), "{shares:?}");
+    assert_eq!(shares.last(), Some(&0.0));
+    for left_alone in [after_a_roll(false, ahead, 0.0), after_a_roll(true, None, 0.0)] {
+        assert!(left_alone.iter().all(|share| *share == 0.0), "{left_alone:?}");
+    }
+    assert_eq!(after_a_roll(true, ahead, 0.2)[14], 0.0, "rough ground");
+}

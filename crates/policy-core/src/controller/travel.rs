@@ -6,7 +6,7 @@ use super::Controller;
 use crate::agility::{OnGraph, Urgency};
 use crate::balance::comes_to_rest;
 use crate::capture_step::CaptureStep;
-use crate::catching::next_catch;
+use crate::catching::{next_catch, out_of_skill};
 use crate::command::Command;
 use crate::fall::{Heights, step_heights};
 use crate::give_way::GiveWayState;
@@ -113,7 +113,7 @@ impl Controller {
         }
     }
 
-    /// Steps under a body that tips over backwards, and catches a push off its course.
+    /// Steps under a body that tips over backwards, and catches a push off its course, or the end of a skill.
     pub(super) fn keep_balance(&mut self, state: &CharacterState, command: &Command, dt: f32) {
         let report = &self.state.report;
         // Skills, falls and blends chosen by hand are none of its business.
@@ -127,9 +127,10 @@ impl Controller {
                 let at = comes_to_rest(skeleton, state);
                 let target = command.target;
                 let (urgency, unevenness) = (&self.state.urgency, self.state.unevenness);
+                let catch = out_of_skill(self.state.catch, self.state.settle_secs, unevenness);
                 (
                     self.state.capture_step.next((graph, position), (state, at), target, dt),
-                    next_catch(self.state.catch, place, (skeleton, state), target, urgency, unevenness, dt),
+                    next_catch(catch, place, (skeleton, state), target, urgency, unevenness, dt),
                 )
             }
             false => (CaptureStep::default(), Lasting::default()),
