@@ -8,7 +8,7 @@ use std::sync::Arc;
 use evaluation::{measure_skill, measure_sweep};
 use physics::{Engine, Model};
 use physics_bridge::GroundKind;
-use policy_core::{BlendMode, CharacterPack};
+use policy_core::{BlendMode, CharacterPack, ControllerConfig};
 
 const PACK: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../assets/humanoid.pack.safetensors");
 const HILLS_SEED: u32 = 7;
@@ -26,7 +26,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let described = physics_bridge::Model::for_pack(&pack)?.with_terrain(ground.terrain(HILLS_SEED))?;
     let model = Model::new(&described, engine)?;
     if let Some(skill) = pack.skill_named(&path) {
-        let report = measure_skill(&model, &pack, skill, characters);
+        let report = measure_skill(&model, &pack, ControllerConfig::default(), skill, characters);
         println!("{path}, {}: {report:?}", engine.title());
         return Ok(());
     }

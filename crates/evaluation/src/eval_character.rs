@@ -40,13 +40,9 @@ impl EvalCharacter {
         Self::with_config(model, pack, ControllerConfig { start, ..ControllerConfig::unassisted() })
     }
 
-    /// As [`EvalCharacter::new`] from a node, under the controller of a player: it does all that it does in a game but get up by itself.
+    /// As [`EvalCharacter::new`], from the node and with all else that `config` has a controller do by itself, but for getting up.
     #[must_use]
-    pub fn of_player(model: &Model, pack: &Arc<CharacterPack>, start: NodeId) -> Self {
-        Self::with_config(model, pack, ControllerConfig { start, ..ControllerConfig::default() })
-    }
-
-    fn with_config(model: &Model, pack: &Arc<CharacterPack>, config: ControllerConfig) -> Self {
+    pub fn with_config(model: &Model, pack: &Arc<CharacterPack>, config: ControllerConfig) -> Self {
         let config = ControllerConfig { auto_recover: false, ..config };
         let mut eval = Self {
             character: Character::new(model),

@@ -107,7 +107,7 @@ pub struct PushReport {
     pub sideways_newton: f32,
 }
 
-/// Measures some sections and tells the progress. What a player feels is measured with `config`. `clips` holds the states of each skill's clips, see
+/// Measures some sections and tells the progress. What a player feels, and skills but for getting up, are measured with `config`. `clips` holds the states of each skill's clips, see
 /// [`clip_states`](super::clip_states); without them there is no pose error.
 ///
 /// # Errors
@@ -140,7 +140,7 @@ pub fn evaluate(
             Section::Push => evaluation.measure_push(model, pack, effort),
             Section::Motion => evaluation.measure_motion(model, pack, clips),
             Section::Layers => evaluation.measure_layers(model, pack, effort),
-            Section::Skills => evaluation.measure_skills(model, pack, effort),
+            Section::Skills => evaluation.measure_skills(model, pack, config, effort),
             other => evaluation.player.measure(*other, &rig)?,
         }
     }
@@ -234,11 +234,17 @@ impl Evaluation {
         self.layers_without_fall = Some(cases.iter().sum::<f32>() / cases.len().max(1) as f32);
     }
 
-    fn measure_skills(&mut self, model: &Model, pack: &Arc<CharacterPack>, effort: &Effort) {
+    fn measure_skills(
+        &mut self,
+        model: &Model,
+        pack: &Arc<CharacterPack>,
+        config: ControllerConfig,
+        effort: &Effort,
+    ) {
         self.getup = measure_get_up(model, pack, "get_up", effort.drops);
         let skills = pack.skills().iter().enumerate().map(|(index, skill)| (SkillId::new(index), skill));
         for (id, skill) in skills.filter(|(id, _)| pack.recovery() != Some(*id)) {
-            let report = measure_skill(model, pack, id, effort.drops);
+            let report = measure_skill(model, pack, config, id, effort.drops);
             self.skills.insert(skill.name.clone(), report);
         }
         self.roll = self.skills.get("roll").map(|skill| skill.rate);

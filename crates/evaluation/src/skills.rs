@@ -6,7 +6,9 @@ use glam::Vec2;
 use physics::{Model, PhysicsCharacter};
 use policy_core::contract::WALKING_START_MPS;
 use policy_core::training::TARGET_RANGE_METRES;
-use policy_core::{BodyId, CharacterPack, CharacterState, Command, Heading, Skeleton, SkillEnd, SkillId};
+use policy_core::{
+    BodyId, CharacterPack, CharacterState, Command, ControllerConfig, Heading, Skeleton, SkillEnd, SkillId,
+};
 use random::Rng;
 use random::limp::drop_limp;
 use rayon::prelude::*;
@@ -185,16 +187,24 @@ pub fn watch_skill(
     states
 }
 
-/// Tries of an episodic skill under a player's controller, out of the node it returns to, walking or standing, that end within 3 s as they are
+/// Tries of an episodic skill under a player's controller with `config`, out of the node it returns to, walking or standing, that end within 3 s as they are
 /// meant to, and after which the character is still up a second later. Each is set down at another speed and goes in another direction, up
 /// to 30 degrees aside, for 2 to 5 s beforehand.
 ///
 /// # Panics
 /// When the pack has no such skill.
 #[must_use]
-pub fn measure_skill(model: &Model, pack: &Arc<CharacterPack>, skill: SkillId, tries: usize) -> SkillReport {
+pub fn measure_skill(
+    model: &Model,
+    pack: &Arc<CharacterPack>,
+    config: ControllerConfig,
+    skill: SkillId,
+    tries: usize,
+) -> SkillReport {
+    let start = pack.skills()[skill.index()].returns_to;
+    let config = ControllerConfig { start, ..config };
     let tries: Vec<_> =
-        (0..tries).into_par_iter().map(|i| comes_back(model, pack, skill, i as u64)).collect();
+        (0..tries).into_par_iter().map(|i| comes_back(model, pack, config, skill, i as u64)).collect();
     let rates: Vec<_> = tries.iter().map(|(well, ended, _)| (*well, *ended)).collect();
     let of = |number: fn(&Limbs) -> Option<f32>| median(tries.iter().map(|(_, _, limbs)| number(limbs)));
     SkillReport {
@@ -221,11 +231,11 @@ fn hands(skeleton: &Skeleton) -> Vec<BodyId> {
 fn comes_back(
     model: &Model,
     pack: &Arc<CharacterPack>,
+    config: ControllerConfig,
     skill: SkillId,
     seed: u64,
 ) -> (bool, Option<f32>, Limbs) {
-    let back = pack.skills()[skill.index()].returns_to;
-    let mut eval = EvalCharacter::of_player(model, pack, back);
+    let mut eval = EvalCharacter::with_config(model, pack, config);
     let mut rng = Rng::new(seed, 13);
     let start = ((SETTLE_SECS + rng.range(0.0, 3.0)) / TICK_SECS) as u32;
     let aside = Vec2::from_angle(rng.range(-ASIDE, ASIDE));
@@ -233,8 +243,9 @@ fn comes_back(
     let (mut ended, mut limbs) = (None, Limbs::default());
     let hands = hands(pack.skeleton());
     for tick in 0..start + ((SKILL_SECS + 1.0) / TICK_SECS) as u32 {
-        let target = eval.ahead(back).target.map(|_| eval.position() + TARGET_RANGE_METRES * aside);
-        let command = Command { skill: (tick == start).then_some(skill), target, ..eval.ahead(back) };
+        let ahead = eval.ahead(config.start);
+        let target = ahead.target.map(|_| eval.position() + TARGET_RANGE_METRES * aside);
+        let command = Command { skill: (tick == start).then_some(skill), target, ..ahead };
         if !eval.tick(&command) || (tick < start && eval.controller.report().fallen) {
             return (false, ended, limbs);
         }

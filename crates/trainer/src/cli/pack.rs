@@ -10,7 +10,7 @@ use evaluation::{measure_get_up, measure_skill};
 use files::{read_bounded, write_atomically};
 use physics::Engine;
 use physics_bridge::Model;
-use policy_core::{CharacterPack, SkillId};
+use policy_core::{CharacterPack, ControllerConfig, SkillId};
 use trainer::checkpoint::CheckpointError;
 use trainer::env::Normalisers;
 use trainer::pack::{Agreement, PackPlan, PlannedPolicy, TrainedSkill, bind, distil};
@@ -123,7 +123,7 @@ fn report_skills(model: &Model, pack: &Arc<CharacterPack>, which: &str, tries: u
         let id = SkillId::new(index);
         let report = match pack.recovery() == Some(id) {
             true => measure_get_up(model, pack, &skill.name, tries).unwrap_or_default(),
-            false => measure_skill(model, pack, id, tries).rate,
+            false => measure_skill(model, pack, ControllerConfig::default(), id, tries).rate,
         };
         say(format_args!(
             "{} with {which} discriminators: {:.1} % succeed, {:.1} % are recognised, after {:.2} s",

@@ -38,8 +38,8 @@ impl Workspace {
         ensure!(!plan.policies.is_empty(), "{needed_by}: expected policies in {PLAN}, found none");
         let mut trained = Vec::new();
         for PlannedPolicy { name, from, .. } in &plan.policies {
-            let of_pack = from.as_ref().map(|run| self.trained(run)).transpose()?.flatten();
-            match of_pack.map_or_else(|| self.trained(name), |found| Ok(Some(found)))? {
+            let mut runs = from.iter().chain([name]).map(|run| self.trained(run));
+            match runs.find_map(Result::transpose).transpose()? {
                 Some((checkpoint, path)) => {
                     trained.push(TrainedSkill::from_checkpoint(name, &checkpoint, &path)?);
                 }
@@ -61,14 +61,17 @@ mod tests {
     use super::*;
     use crate::normaliser_file;
 
+    fn assets() -> PathBuf {
+        Path::new(env!("CARGO_MANIFEST_DIR")).join("../../assets")
+    }
+
     fn workspace(folder: &Path) -> Workspace {
-        let assets = PathBuf::from(concat!(env!("CARGO_MANIFEST_DIR"), "/../../assets"));
-        let (model, kept) = (Model::load(assets.join("humanoid.xml")).unwrap(), folder.join("kept"));
-        let normaliser = assets.join("checkpoints/normaliser.safetensors");
+        let model = Model::load(assets().join("humanoid.xml")).unwrap();
+        let normaliser = assets().join("checkpoints/normaliser.safetensors");
         Workspace {
-            recipes: assets.join("recipes"),
+            recipes: assets().join("recipes"),
             runs: folder.join("runs"),
-            kept,
+            kept: folder.join("kept"),
             clips: ClipFolder::from_argument(Some(folder.to_owned())).unwrap(),
             normalisers: normaliser_file::load(&normaliser, model.skeleton()).unwrap(),
             model,
@@ -81,10 +84,9 @@ mod tests {
         let folder = tempfile::tempdir().unwrap();
         let workspace = workspace(folder.path());
         std::fs::create_dir(&workspace.kept).unwrap();
-        let assets = concat!(env!("CARGO_MANIFEST_DIR"), "/../../assets/checkpoints");
         let copy = |name: &str| {
             let file = format!("{name}.safetensors");
-            std::fs::copy(Path::new(assets).join(&file), workspace.kept.join(&file)).unwrap();
+            std::fs::copy(assets().join("checkpoints").join(&file), workspace.kept.join(&file)).unwrap();
         };
         let recipe = workspace.recipe("walk_catch").unwrap();
         let run = || {
