@@ -7,7 +7,7 @@ use common::harness::{click, harness, open};
 use egui::accesskit::Role;
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable as _;
-use policy_core::Goal;
+use policy_core::{Button, Goal};
 use viewer::app::{App, PanelKind};
 
 #[test]
@@ -22,6 +22,20 @@ fn tab_leaves_the_keyboard_to_the_game() {
     harness.state_mut().advance(0.2);
     assert!(harness.state().input().left_stick[1] > 0.9, "{:?}", harness.state().input());
     assert!(harness.state().layout.hidden, "three times Tab hides, shows and hides");
+}
+
+#[test]
+fn a_tap_shorter_than_a_frame_presses_a_button_for_a_tick() {
+    let mut harness = open(PanelKind::Physics);
+    let pressed = |harness: &Harness<'_, App>| harness.state().input().buttons.contains(Button::East);
+    harness.key_press(egui::Key::R); // down and up between two frames
+    harness.run_steps(2);
+    harness.state_mut().advance(0.01);
+    harness.run_steps(1);
+    assert!(pressed(&harness), "less than a tick has passed");
+    harness.state_mut().advance(0.05);
+    harness.run_steps(1);
+    assert!(!pressed(&harness), "nobody holds it");
 }
 
 #[test]

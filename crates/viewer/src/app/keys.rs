@@ -12,6 +12,20 @@ const RAMP_SECS: f32 = 1.2;
 /// Seconds in which the stick follows the keys.
 const STICK_SECS: f32 = 0.15;
 
+/// Least seconds for which a button stays down, a little more than a tick: a key that is tapped for less than a frame counts too.
+const LEAST_PRESS_SECS: f32 = 0.05;
+
+/// Buttons that keys press.
+const BUTTON_KEYS: [(KeyAction, Button); 7] = [
+    (KeyAction::GetUp, Button::South),
+    (KeyAction::Roll, Button::East),
+    (KeyAction::Jump, Button::North),
+    (KeyAction::Punch, Button::West),
+    (KeyAction::Style, Button::RightShoulder),
+    (KeyAction::Strafe, Button::RightStick),
+    (KeyAction::Shove, SHOVE_BUTTON),
+];
+
 /// Keys held, and the sticks and triggers that they make.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Keys {
@@ -19,6 +33,8 @@ pub struct Keys {
     wanted_right: [f32; 2],
     wanted_triggers: [f32; 2],
     buttons: Buttons,
+    /// For how long each of [`BUTTON_KEYS`] stays down at least, seconds.
+    pressed_secs: [f32; BUTTON_KEYS.len()],
     stick: [f32; 2],
     triggers: [f32; 2],
     flight: [f32; 3],
@@ -80,18 +96,12 @@ impl Keys {
         self.wanted_stick = stick.map(|v| v / length * push);
         self.wanted_right = [axis(&[Key::L], &[Key::U]), axis(&[Key::O], &[Key::I])].map(|v| 0.6 * v);
         self.wanted_triggers = [down(&[key(KeyAction::Lower)]), down(&[key(KeyAction::Faster)])];
-        let held = [
-            (KeyAction::GetUp, Button::South),
-            (KeyAction::Roll, Button::East),
-            (KeyAction::Jump, Button::North),
-            (KeyAction::Punch, Button::West),
-            (KeyAction::Style, Button::RightShoulder),
-            (KeyAction::Strafe, Button::RightStick),
-            (KeyAction::Shove, SHOVE_BUTTON),
-        ];
         let mut buttons = Buttons::NONE;
-        for (action, button) in held {
-            buttons.set(button, input.key_down(key(action)));
+        for ((action, button), secs) in BUTTON_KEYS.into_iter().zip(&mut self.pressed_secs) {
+            if input.key_pressed(key(action)) {
+                *secs = LEAST_PRESS_SECS;
+            }
+            buttons.set(button, input.key_down(key(action)) || *secs > 0.0);
         }
         self.buttons = buttons;
     }
@@ -106,6 +116,7 @@ impl Keys {
             towards(&mut self.stick[i], self.wanted_stick[i], STICK_SECS);
             towards(&mut self.triggers[i], self.wanted_triggers[i], RAMP_SECS);
         }
+        self.pressed_secs.iter_mut().for_each(|secs| *secs = (*secs - dt).max(0.0));
     }
 }
 
