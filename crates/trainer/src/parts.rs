@@ -8,7 +8,7 @@ use random::Rng;
 
 use crate::amp::DiscriminatorLearner;
 use crate::checkpoint::{CRITIC, Checkpoint};
-use crate::env::{Demonstrations, GraphNode, TerminationHeights, TrainingGraph};
+use crate::env::{Demonstrations, GraphNode, TerminationHeights, TrainingGraph, mirror_of};
 use crate::nn::Network;
 use crate::pack::TrainedSkill;
 use crate::ppo::{Actor, Learner};
@@ -35,7 +35,17 @@ struct Skill {
 impl Workspace {
     /// What a recipe starts from.
     pub(crate) fn parts(&self, recipe: &Recipe, seed: u64) -> Result<Parts> {
-        if recipe.paths.is_empty() { self.skill_parts(recipe, seed) } else { self.joint_parts(recipe, seed) }
+        let mut parts = if recipe.paths.is_empty() {
+            self.skill_parts(recipe, seed)
+        } else {
+            self.joint_parts(recipe, seed)
+        }?;
+        if recipe.phases.iter().any(|phase| phase.ppo.symmetry > 0.0) {
+            let mirror = mirror_of(self.model.skeleton(), &self.normalisers.observation);
+            parts.learner.mirror =
+                Some(mirror.with_context(|| format!("{}: ppo.symmetry needs a mirror image", recipe.skill))?);
+        }
+        Ok(parts)
     }
 
     /// Where a trained skill is: in its own run, else in one that trained it together with others.

@@ -24,7 +24,7 @@ use crate::training::{IterationReport, Training};
 
 /// Columns of `metrics.csv`.
 pub const METRICS: &str = "samples,secs,rate,style,task,reward,speed_error,episode_ticks,failed,kl,learning_rate,\
-                           value_error,clipped,discriminator_accuracy,cross_entropy,squared_gradient,distance,tracking";
+                           value_error,clipped,discriminator_accuracy,cross_entropy,squared_gradient,distance,tracking,asymmetry";
 
 /// Iterations between checkpoints.
 const CHECKPOINT_EVERY: u64 = 25;
@@ -131,6 +131,7 @@ fn metrics_line(samples: u64, secs: f64, rate: f64, report: &IterationReport) ->
         f64::from(d.squared_gradient),
         report.distance,
         p.tracking / ticks,
+        f64::from(u.asymmetry),
     ] {
         let _ = write!(line, ",{value:.6}");
     }

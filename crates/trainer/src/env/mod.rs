@@ -13,6 +13,7 @@ mod graph;
 #[cfg(test)]
 mod made_up;
 mod meetings;
+mod mirrored;
 mod normalisers;
 mod observation;
 mod randomisation;
@@ -31,6 +32,7 @@ pub use exploration::ExplorationConfig;
 pub use graph::{GraphNode, TrainingGraph};
 pub use meetings::MeetingsConfig;
 pub(crate) use meetings::{MET, WALK};
+pub use mirrored::{MirrorError, mirror_of};
 pub use normalisers::Normalisers;
 pub use randomisation::RandomisationConfig;
 pub(crate) use reset::PLAYED;

@@ -45,6 +45,9 @@ pub struct PpoConfig {
     pub behaviour_cloning: f32,
     /// Weight of the squared distance to the parent's parameters.
     pub regularisation: f32,
+    /// Weight of the symmetry loss: the squared distance between the mean action and the mirror image of the mean action in the
+    /// mirrored state (Yu, Turk, Liu 2018). It takes the name of each body and hinge with `left` for `right` to be its mirror image.
+    pub symmetry: f32,
     /// Hidden sizes of the critic.
     pub critic_hidden: Vec<usize>,
 }
@@ -62,6 +65,7 @@ impl Default for PpoConfig {
             max_learning_rate: 1e-3,
             behaviour_cloning: 0.0,
             regularisation: 0.0,
+            symmetry: 0.0,
             critic_hidden: vec![256, 128],
         }
     }

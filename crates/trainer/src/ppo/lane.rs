@@ -3,6 +3,7 @@
 use super::config::{BOUND_PENALTY, CLIP};
 use super::gaussian::{kl_divergence, log_probability};
 use super::learner::{Actor, line_of};
+use super::mirror::Mirror;
 use super::rollout::Rollout;
 use super::update::UpdateReport;
 use crate::nn::{Network, Pass};
@@ -32,11 +33,12 @@ impl Lane {
     pub(super) fn new((actors, edges): (&[Actor], &[[usize; 2]]), critic: &Network, rows: usize) -> Self {
         let actor = &actors[0].network;
         Self {
-            actor: Pass::new(actor.sizes(), rows),
+            // Each row once more in the mirror.
+            actor: Pass::new(actor.sizes(), 2 * rows),
             critic: Pass::new(critic.sizes(), rows),
-            input: Vec::with_capacity(rows * actor.inputs()),
+            input: Vec::with_capacity(2 * rows * actor.inputs()),
             critic_input: vec![0.0; rows * critic.inputs()],
-            blend: Vec::with_capacity(rows),
+            blend: Vec::with_capacity(2 * rows),
             groups: vec![Vec::new(); edges.len()],
             actor_gradients: vec![vec![0.0; actor.parameters.len()]; actors.len()],
             critic_gradient: vec![0.0; critic.parameters.len()],
@@ -74,10 +76,20 @@ impl Lane {
             self.input.extend_from_slice(&shared.rollout.inputs[row * inputs..(row + 1) * inputs]);
             self.blend.push(shared.rollout.blend[row]);
         }
+        if let Some(mirror) = shared.mirror {
+            let seen = self.input.len();
+            self.input.resize(2 * seen, 0.0);
+            let (seen, mirrored) = self.input.split_at_mut(seen);
+            let pairs = seen.chunks_exact(inputs).zip(mirrored.chunks_exact_mut(inputs));
+            pairs.for_each(|(seen, mirrored)| mirror.inputs.apply_into(seen, mirrored));
+            self.blend.extend_from_within(..);
+        }
         let (network, line) = line_of(shared.actors, [from, to], &self.blend);
         self.actor.forward(network, line, &self.input);
         let actions = network.outputs();
-        let (means, deltas) = self.actor.output_and_delta(rows.len());
+        let (means, deltas) = self.actor.output_and_delta(self.blend.len());
+        let (means, mirrored_means) = means.split_at(rows.len() * actions);
+        let (deltas, mirrored_deltas) = deltas.split_at_mut(rows.len() * actions);
         let pairs = means.chunks_exact(actions).zip(deltas.chunks_exact_mut(actions));
         for ((row, t), (mean, delta)) in rows.iter().zip(&self.blend).zip(pairs) {
             let kl = shared.policy_gradient(*row as usize, mean, delta, &mut self.sums);
@@ -85,6 +97,16 @@ impl Lane {
             for (actor, weight) in [(from, 1.0 - t), (to, t)] {
                 self.kl[actor][0] += weight * kl;
                 self.kl[actor][1] += weight;
+            }
+        }
+        if let Some(mirror) = shared.mirror {
+            mirrored_deltas.fill(0.0);
+            let pairs = means.chunks_exact(actions).zip(deltas.chunks_exact_mut(actions));
+            let mirrored =
+                mirrored_means.chunks_exact(actions).zip(mirrored_deltas.chunks_exact_mut(actions));
+            for ((mean, delta), (other, other_delta)) in pairs.zip(mirrored) {
+                let factor = shared.symmetry * shared.scale;
+                self.sums.asymmetry += mirror.asymmetry([mean, other], [delta, other_delta], factor);
             }
         }
         let (gradient, parent) = match self.actor_gradients.get_disjoint_mut([from, to]) {
@@ -120,6 +142,9 @@ pub(super) struct Shared<'a> {
     pub(super) gamma: f32,
     pub(super) action_std: f32,
     pub(super) behaviour_cloning: f32,
+    /// There with a symmetry loss alone.
+    pub(super) mirror: Option<&'a Mirror>,
+    pub(super) symmetry: f32,
     pub(super) scale: f32,
 }
 

@@ -5,6 +5,7 @@ use random::Rng;
 use super::batch::BatchEvaluator;
 use super::config::{EMA_DECAY, GAE_LAMBDA, PpoConfig};
 use super::lane::Lane;
+use super::mirror::Mirror;
 use super::rollout::Rollout;
 use crate::nn::{Adam, Line, Network};
 
@@ -54,6 +55,8 @@ pub struct Learner {
     pub critic: Network,
     /// The critic's optimiser.
     pub critic_adam: Adam,
+    /// The mirror image of inputs and actions; the symmetry loss needs it.
+    pub mirror: Option<Mirror>,
     /// Draws actions and shuffles rows.
     pub rng: Rng,
     pub(super) lanes: Vec<Lane>,
@@ -102,6 +105,7 @@ impl Learner {
             kl: vec![[0.0; 2]; actors.len()],
             gathered: Gathered::default(),
             bootstrap: Vec::new(),
+            mirror: None,
             config,
             actors,
             edges,

@@ -2,13 +2,15 @@
 //! [`Learner::compute_returns`], [`Learner::update`]. Knows nothing of characters, clips or styles.
 //!
 //! One thing is beyond the paper: policies are trained along the straight lines between them, each row acting with its own
-//! blend of the two ends of an edge; either end may be frozen.
+//! blend of the two ends of an edge; either end may be frozen. A symmetry loss (Yu, Turk, Liu 2018) can pull the mean action in a
+//! mirrored state to the mirror image of the mean action.
 
 mod batch;
 mod config;
 mod gaussian;
 mod lane;
 mod learner;
+mod mirror;
 mod rollout;
 mod update;
 
@@ -18,5 +20,6 @@ pub use config::{
 };
 pub use gaussian::{kl_divergence, log_probability};
 pub use learner::{Actor, Learner};
+pub use mirror::{Mirror, SignedPermutation};
 pub use rollout::{Done, Rollout};
 pub use update::UpdateReport;

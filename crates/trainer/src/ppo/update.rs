@@ -18,6 +18,9 @@ pub struct UpdateReport {
     pub value_error: f32,
     /// Share of rows whose ratio left the clip range.
     pub clipped: f32,
+    /// Root of the mean squared distance between an action and the mirror image of that in the mirrored state, over all
+    /// joints; zero without a symmetry loss.
+    pub asymmetry: f32,
     /// Largest norm of an actor's gradient before clipping.
     pub grad_norm: f32,
 }
@@ -49,6 +52,7 @@ impl Learner {
                 total.kl += report.kl;
                 total.value_error += report.value_error;
                 total.clipped += report.clipped;
+                total.asymmetry += report.asymmetry;
                 total.grad_norm += report.grad_norm;
                 steps += 1.0;
             }
@@ -56,9 +60,11 @@ impl Learner {
         }
         self.adapt_learning_rates();
         self.update_ema();
-        for value in [&mut total.kl, &mut total.value_error, &mut total.clipped, &mut total.grad_norm] {
+        let UpdateReport { kl, value_error, clipped, asymmetry, grad_norm } = &mut total;
+        for value in [kl, value_error, clipped, asymmetry, grad_norm] {
             *value /= steps;
         }
+        total.asymmetry = (total.asymmetry / self.actor().outputs() as f32).sqrt();
         total
     }
 
@@ -75,6 +81,8 @@ impl Learner {
             } else {
                 self.config.behaviour_cloning
             },
+            mirror: self.mirror.as_ref().filter(|_| self.config.symmetry > 0.0),
+            symmetry: self.config.symmetry,
             scale: 1.0 / minibatch.len() as f32,
         };
         let share = minibatch.len().div_ceil(Lane::COUNT);
@@ -136,12 +144,14 @@ impl UpdateReport {
         self.kl += other.kl;
         self.value_error += other.value_error;
         self.clipped += other.clipped;
+        self.asymmetry += other.asymmetry;
     }
 
     fn scale(&mut self, by: f32) {
         self.kl *= by;
         self.value_error *= by;
         self.clipped *= by;
+        self.asymmetry *= by;
     }
 }
 

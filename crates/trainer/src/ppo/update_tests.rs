@@ -1,6 +1,6 @@
 use random::Rng;
 
-use super::super::{Done, PpoConfig};
+use super::super::{Done, Mirror, PpoConfig, SignedPermutation};
 use super::*;
 use crate::nn::Network;
 
@@ -144,4 +144,25 @@ fn a_guide_leads_the_policy_and_rows_without_one_do_not() {
     };
     assert!((led(0.5) - 0.5).abs() < 0.05, "{}", led(0.5));
     assert!(led(f32::NAN).abs() < 0.3, "{}", led(f32::NAN));
+}
+
+#[test]
+fn a_symmetry_loss_makes_a_policy_act_in_the_mirror_as_its_mirror_image() {
+    let asymmetry = |symmetry: f32| {
+        let mut learner = learner(7);
+        learner.config.symmetry = symmetry;
+        let negated = |count: usize| SignedPermutation::new((0..count).map(|i| (i, -1.0)).collect());
+        learner.mirror = Some(Mirror { inputs: negated(2), actions: negated(1) });
+        let mut rng = Rng::new(7, 1);
+        let mut carts: Vec<Cart> = (0..CHARACTERS).map(|_| Cart::new(&mut rng)).collect();
+        let mut rollout = Rollout::new((STEPS, CHARACTERS), (2, 3), 1);
+        for _ in 0..40 {
+            iterate(&mut learner, &mut carts, &mut rollout, &mut rng);
+        }
+        let mut means = [0.0; 2];
+        learner.means_into(&[0.5, -0.3, -0.5, 0.3], &[0; 2], &[0.0; 2], &mut means);
+        (means[0] + means[1]).abs()
+    };
+    let (free, held) = (asymmetry(0.0), asymmetry(50.0));
+    assert!(held < 0.3 * free, "{free} {held}");
 }

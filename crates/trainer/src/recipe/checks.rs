@@ -171,6 +171,12 @@ impl Recipe {
                 command.clock_seconds.to_string(),
             ),
             (
+                command.clock_seconds == 0.0 || ppo.symmetry == 0.0,
+                "ppo.symmetry",
+                "0 beside a clock, which takes the place of the target",
+                ppo.symmetry.to_string(),
+            ),
+            (
                 reset
                     .in_play
                     .is_none_or(|in_play| !together && in_play.maximum_speed_mps.is_some() == tracks),

@@ -94,6 +94,7 @@ const RANGES: &[(&str, f64, f64)] = &[
     ("ppo.max_learning_rate", 1e-9, 1.0),
     ("ppo.behaviour_cloning", 0.0, 1e6),
     ("ppo.regularisation", 0.0, 1e3),
+    ("ppo.symmetry", 0.0, 1e6),
     ("ppo.critic_hidden", 1.0, 2048.0),
     ("discriminator.hidden", 1.0, 2048.0),
     ("discriminator.updates", 0.0, 64.0),

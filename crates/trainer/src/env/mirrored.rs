@@ -1,0 +1,182 @@
+//! Which inputs and actions of a skeleton are mirror images of each other.
+
+use glam::Vec3;
+use policy_core::Skeleton;
+use policy_core::training::{ActionScaling, Normaliser};
+
+use crate::ppo::{Mirror, SignedPermutation};
+
+/// Why a skeleton has no mirror image.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[non_exhaustive]
+pub enum MirrorError {
+    /// A body or hinge has a side, and the other side has none of that name.
+    #[error("expected a body or hinge named {expected}, the mirror image of {found}, found none")]
+    Missing {
+        /// The one that is there.
+        found: String,
+        /// The one that is not.
+        expected: String,
+    },
+    /// A hinge's axis or range is not the mirror image of its partner's.
+    #[error("expected axis and range of hinge {first} to be the mirror image of those of {second}")]
+    Hinge {
+        /// A hinge.
+        first: String,
+        /// The one that should be its mirror image.
+        second: String,
+    },
+    /// A normaliser was computed from one side alone.
+    #[error("expected mean and deviation of input {input} to be those of its mirror image, input {other}")]
+    Normaliser {
+        /// An input.
+        input: usize,
+        /// Its mirror image.
+        other: usize,
+    },
+}
+
+/// The mirror image in the plane of x and z: a body, and its hinges, go to the one whose name has `left` for `right`.
+/// Inputs are those of [`policy_core::observe_into`] after `normaliser`, and the target.
+///
+/// # Errors
+/// When a name is missing on one side, hinges are no mirror images of each other, or the normaliser is not symmetric.
+pub fn mirror_of(skeleton: &Skeleton, normaliser: &Normaliser) -> Result<Mirror, MirrorError> {
+    let missing = |found: &str| MirrorError::Missing { found: found.to_owned(), expected: swapped(found) };
+    let partners = skeleton.bodies().iter().map(|body| {
+        let partner = skeleton.body_named(&swapped(&body.name));
+        partner.map(policy_core::BodyId::index).ok_or_else(|| missing(&body.name))
+    });
+    let partners: Vec<usize> = partners.collect::<Result<_, _>>()?;
+
+    const POLAR: [f32; 3] = [1.0, -1.0, 1.0];
+    const AXIAL: [f32; 3] = [-1.0, 1.0, -1.0];
+    let mut inputs = vec![(0, 1.0)];
+    let mut vectors = |bodies: std::ops::Range<usize>, signs: &[f32]| {
+        let (start, first) = (inputs.len(), bodies.start);
+        for body in bodies {
+            let from = start + signs.len() * (partners[body] - first);
+            inputs.extend(signs.iter().enumerate().map(|(number, sign)| (from + number, *sign)));
+        }
+    };
+    let count = skeleton.body_count();
+    vectors(1..count, &POLAR); // places
+    vectors(0..count, &[POLAR, POLAR].concat()); // x and z axes
+    vectors(0..count, &POLAR); // velocities
+    vectors(0..count, &AXIAL); // angular velocities
+    for (input, &(other, sign)) in inputs.iter().enumerate() {
+        let (mean, deviation) = (normaliser.mean(), normaliser.deviation());
+        let apart = (mean[input] - sign * mean[other]).abs() + (deviation[input] - deviation[other]).abs();
+        if apart > 1e-3 * deviation[input] {
+            return Err(MirrorError::Normaliser { input, other });
+        }
+    }
+    let target = inputs.len();
+    inputs.extend([(target, 1.0), (target + 1, -1.0)]);
+
+    let scaling = ActionScaling::from_skeleton(skeleton);
+    let actions = skeleton.joints().iter().enumerate().map(|(index, joint)| {
+        let partner = skeleton.joint_named(&swapped(&joint.name)).ok_or_else(|| missing(&joint.name))?;
+        let other = &skeleton.joints()[partner.index()];
+        let sign = (Vec3::from_array(AXIAL) * other.axis).dot(joint.axis).round();
+        let close = |a: f32, b: f32| (a - b).abs() < 1e-4;
+        let (centre, gain) = (scaling.centre(), scaling.gain());
+        let same = partners[joint.body.index()] == other.body.index()
+            && close(sign.abs(), 1.0)
+            && (Vec3::from_array(AXIAL) * other.axis).distance(sign * joint.axis) < 1e-3
+            && close(centre[index], sign * centre[partner.index()])
+            && close(gain[index], gain[partner.index()]);
+        let hinge = || MirrorError::Hinge { first: joint.name.clone(), second: other.name.clone() };
+        same.then_some((partner.index(), sign)).ok_or_else(hinge)
+    });
+    let actions = actions.collect::<Result<_, _>>()?;
+    Ok(Mirror { inputs: SignedPermutation::new(inputs), actions: SignedPermutation::new(actions) })
+}
+
+/// The name on the other side.
+fn swapped(name: &str) -> String {
+    if name.contains("left") { name.replace("left", "right") } else { name.replace("right", "left") }
+}
+
+#[cfg(test)]
+mod tests {
+    use glam::Quat;
+    use policy_core::{CharacterState, observe_into};
+
+    use super::*;
+
+    fn normaliser(skeleton: &Skeleton) -> Normaliser {
+        let len = skeleton.observation_len();
+        Normaliser::from_mean_and_deviation(&vec![0.0; len], &vec![1.0; len]).unwrap()
+    }
+
+    /// The state in the mirror, body by body.
+    fn in_the_mirror(skeleton: &Skeleton, state: &CharacterState) -> CharacterState {
+        let mut mirrored = state.clone();
+        let (polar, axial) = (Vec3::new(1.0, -1.0, 1.0), Vec3::new(-1.0, 1.0, -1.0));
+        for (index, body) in skeleton.bodies().iter().enumerate() {
+            let to = skeleton.body_named(&swapped(&body.name)).unwrap().index();
+            let (from, into) = (&state.bodies[index], &mut mirrored.bodies[to]);
+            into.position = polar * from.position;
+            into.linear_velocity = polar * from.linear_velocity;
+            into.angular_velocity = axial * from.angular_velocity;
+            let q = from.rotation;
+            into.rotation = Quat::from_xyzw(-q.x, q.y, -q.z, q.w);
+            mirrored.ground_rises[to] = state.ground_rises[index];
+        }
+        mirrored
+    }
+
+    #[test]
+    fn what_a_mirrored_character_sees_is_the_mirror_image_of_what_it_saw() {
+        let skeleton = Skeleton::humanoid();
+        let mut state = CharacterState::new(&skeleton);
+        for (i, body) in state.bodies.iter_mut().enumerate() {
+            let f = i as f32;
+            body.position = Vec3::new(0.1 * f, 0.05 * f - 0.2, 1.0 - 0.03 * f);
+            body.rotation = Quat::from_xyzw(0.1 * f, 0.2, -0.05 * f, 1.0).normalize();
+            body.linear_velocity = Vec3::new(1.0 - 0.1 * f, 0.2, 0.01 * f);
+            body.angular_velocity = Vec3::new(0.3, -0.1 * f, 0.2);
+        }
+        let mirror = mirror_of(&skeleton, &normaliser(&skeleton)).unwrap();
+        let seen = |state: &CharacterState| {
+            let mut seen = vec![0.0; skeleton.observation_len()];
+            observe_into(&skeleton, state, &mut seen);
+            seen.extend([0.4, 0.3]);
+            seen
+        };
+        let mut expected = seen(&in_the_mirror(&skeleton, &state));
+        let last = expected.len() - 1;
+        expected[last] = -0.3;
+        let mut found = vec![0.0; expected.len()];
+        mirror.inputs.apply_into(&seen(&state), &mut found);
+        for (index, (found, expected)) in found.iter().zip(&expected).enumerate() {
+            assert!((found - expected).abs() < 1e-5, "{index}: expected {expected}, found {found}");
+        }
+    }
+
+    #[test]
+    fn knees_swap_and_the_trunk_leans_to_the_other_side() {
+        let skeleton = Skeleton::humanoid();
+        let mirror = mirror_of(&skeleton, &normaliser(&skeleton)).unwrap();
+        let entry = |name: &str| {
+            let (from, sign) = mirror.actions.entry(skeleton.joint_named(name).unwrap().index());
+            (skeleton.joints()[from].name.clone(), sign)
+        };
+        assert_eq!(entry("left_knee"), ("right_knee".into(), 1.0));
+        assert_eq!(entry("right_hip_x"), ("left_hip_x".into(), -1.0));
+        assert_eq!(entry("abdomen_y"), ("abdomen_y".into(), 1.0));
+        assert_eq!(entry("abdomen_z"), ("abdomen_z".into(), -1.0));
+    }
+
+    #[test]
+    fn a_normaliser_of_one_side_alone_is_refused() {
+        let skeleton = Skeleton::humanoid();
+        let mut mean = vec![0.0; skeleton.observation_len()];
+        mean[2] = 0.5; // the torso aside
+        let one_sided =
+            Normaliser::from_mean_and_deviation(&mean, &vec![1.0; skeleton.observation_len()]).unwrap();
+        let error = mirror_of(&skeleton, &one_sided).unwrap_err();
+        assert_eq!(error, MirrorError::Normaliser { input: 2, other: 2 });
+    }
+}
