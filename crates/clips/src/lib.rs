@@ -241,9 +241,10 @@ impl Clip {
     }
 }
 
-/// The name of the body on the other side: with `left` where this one has `right`, and the other way round. `None` for a body in the
+/// The name of the body or hinge on the other side: with `left` where this one has `right`, and the other way round. `None` for one in the
 /// middle.
-fn twin_name(name: &str) -> Option<String> {
+#[must_use]
+pub fn twin_name(name: &str) -> Option<String> {
     match (name.contains("left"), name.contains("right")) {
         (true, false) => Some(name.replace("left", "right")),
         (false, true) => Some(name.replace("right", "left")),

@@ -24,7 +24,8 @@ use crate::training::{IterationReport, Training};
 
 /// Columns of `metrics.csv`.
 pub const METRICS: &str = "samples,secs,rate,style,task,reward,speed_error,episode_ticks,failed,kl,learning_rate,\
-                           value_error,clipped,discriminator_accuracy,cross_entropy,squared_gradient,distance,tracking,asymmetry";
+                           value_error,clipped,discriminator_accuracy,cross_entropy,squared_gradient,distance,\
+                           tracking,asymmetry";
 
 /// Iterations between checkpoints.
 const CHECKPOINT_EVERY: u64 = 25;

@@ -35,7 +35,7 @@ fn a_tap_shorter_than_a_frame_presses_a_button_for_a_tick() {
     assert!(pressed(&harness), "less than a tick has passed");
     harness.state_mut().advance(0.05);
     harness.run_steps(1);
-    assert!(!pressed(&harness), "nobody holds it");
+    assert!(!pressed(&harness), "the key is up again");
 }
 
 #[test]

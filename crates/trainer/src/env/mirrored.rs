@@ -1,5 +1,6 @@
 //! Which inputs and actions of a skeleton are mirror images of each other.
 
+use clips::twin_name;
 use glam::Vec3;
 use policy_core::Skeleton;
 use policy_core::training::{ActionScaling, Normaliser};
@@ -78,12 +79,12 @@ pub fn mirror_of(skeleton: &Skeleton, normaliser: &Normaliser) -> Result<Mirror,
     let actions = skeleton.joints().iter().enumerate().map(|(index, joint)| {
         let partner = skeleton.joint_named(&swapped(&joint.name)).ok_or_else(|| missing(&joint.name))?;
         let other = &skeleton.joints()[partner.index()];
-        let sign = (Vec3::from_array(AXIAL) * other.axis).dot(joint.axis).round();
+        let axis = Vec3::from_array(AXIAL) * other.axis;
+        let sign = axis.dot(joint.axis).round();
         let close = |a: f32, b: f32| (a - b).abs() < 1e-4;
         let (centre, gain) = (scaling.centre(), scaling.gain());
         let same = partners[joint.body.index()] == other.body.index()
-            && close(sign.abs(), 1.0)
-            && (Vec3::from_array(AXIAL) * other.axis).distance(sign * joint.axis) < 1e-3
+            && axis.distance(sign * joint.axis) < 1e-3
             && close(centre[index], sign * centre[partner.index()])
             && close(gain[index], gain[partner.index()]);
         let hinge = || MirrorError::Hinge { first: joint.name.clone(), second: other.name.clone() };
@@ -93,72 +94,59 @@ pub fn mirror_of(skeleton: &Skeleton, normaliser: &Normaliser) -> Result<Mirror,
     Ok(Mirror { inputs: SignedPermutation::new(inputs), actions: SignedPermutation::new(actions) })
 }
 
-/// The name on the other side.
+/// The name on the other side; the same for what is in the middle.
 fn swapped(name: &str) -> String {
-    if name.contains("left") { name.replace("left", "right") } else { name.replace("right", "left") }
+    twin_name(name).unwrap_or_else(|| name.to_owned())
 }
 
 #[cfg(test)]
 mod tests {
+    use clips::{Clip, fit};
     use glam::Quat;
-    use policy_core::{CharacterState, observe_into};
+    use policy_core::observe_into;
 
     use super::*;
+    use crate::env::made_up::{shipped, still};
 
-    fn normaliser(skeleton: &Skeleton) -> Normaliser {
-        let len = skeleton.observation_len();
-        Normaliser::from_mean_and_deviation(&vec![0.0; len], &vec![1.0; len]).unwrap()
-    }
-
-    /// The state in the mirror, body by body.
-    fn in_the_mirror(skeleton: &Skeleton, state: &CharacterState) -> CharacterState {
-        let mut mirrored = state.clone();
-        let (polar, axial) = (Vec3::new(1.0, -1.0, 1.0), Vec3::new(-1.0, 1.0, -1.0));
-        for (index, body) in skeleton.bodies().iter().enumerate() {
-            let to = skeleton.body_named(&swapped(&body.name)).unwrap().index();
-            let (from, into) = (&state.bodies[index], &mut mirrored.bodies[to]);
-            into.position = polar * from.position;
-            into.linear_velocity = polar * from.linear_velocity;
-            into.angular_velocity = axial * from.angular_velocity;
-            let q = from.rotation;
-            into.rotation = Quat::from_xyzw(-q.x, q.y, -q.z, q.w);
-            mirrored.ground_rises[to] = state.ground_rises[index];
+    /// A clip that turns every body, each by another angle, and goes aside.
+    fn crooked() -> Clip {
+        let mut clip = still(12);
+        for (frame, rotations) in clip.local_rotations.iter_mut().enumerate() {
+            clip.root_positions[frame].y = 0.02 * frame as f32;
+            for (body, rotation) in rotations.iter_mut().enumerate() {
+                let angle = 0.01 * (frame * (body + 1)) as f32;
+                *rotation = Quat::from_rotation_y(angle) * Quat::from_rotation_x(0.1 - angle);
+            }
         }
-        mirrored
+        clip
     }
 
     #[test]
     fn what_a_mirrored_character_sees_is_the_mirror_image_of_what_it_saw() {
-        let skeleton = Skeleton::humanoid();
-        let mut state = CharacterState::new(&skeleton);
-        for (i, body) in state.bodies.iter_mut().enumerate() {
-            let f = i as f32;
-            body.position = Vec3::new(0.1 * f, 0.05 * f - 0.2, 1.0 - 0.03 * f);
-            body.rotation = Quat::from_xyzw(0.1 * f, 0.2, -0.05 * f, 1.0).normalize();
-            body.linear_velocity = Vec3::new(1.0 - 0.1 * f, 0.2, 0.01 * f);
-            body.angular_velocity = Vec3::new(0.3, -0.1 * f, 0.2);
-        }
-        let mirror = mirror_of(&skeleton, &normaliser(&skeleton)).unwrap();
-        let seen = |state: &CharacterState| {
+        let (model, _, normalisers) = shipped();
+        let skeleton = model.skeleton();
+        let mirror = mirror_of(skeleton, &normalisers.observation).unwrap();
+        let seen = |clip: &Clip, target: [f32; 2]| {
+            let state = fit(clip, &model).unwrap().states[5].clone();
             let mut seen = vec![0.0; skeleton.observation_len()];
-            observe_into(&skeleton, state, &mut seen);
-            seen.extend([0.4, 0.3]);
+            observe_into(skeleton, &state, &mut seen);
+            seen.extend(target);
             seen
         };
-        let mut expected = seen(&in_the_mirror(&skeleton, &state));
-        let last = expected.len() - 1;
-        expected[last] = -0.3;
+        let clip = crooked();
+        let (first, expected) = (seen(&clip, [0.4, 0.3]), seen(&clip.mirrored(), [0.4, -0.3]));
         let mut found = vec![0.0; expected.len()];
-        mirror.inputs.apply_into(&seen(&state), &mut found);
-        for (index, (found, expected)) in found.iter().zip(&expected).enumerate() {
-            assert!((found - expected).abs() < 1e-5, "{index}: expected {expected}, found {found}");
-        }
+        mirror.inputs.apply_into(&first, &mut found);
+        let apart = |a: &[f32]| a.iter().zip(&expected).map(|(a, b)| (a - b).abs()).fold(0.0, f32::max);
+        assert!(apart(&first) > 0.1, "the clip is not its own mirror image");
+        assert!(apart(&found) < 1e-4, "{}", apart(&found));
     }
 
     #[test]
     fn knees_swap_and_the_trunk_leans_to_the_other_side() {
-        let skeleton = Skeleton::humanoid();
-        let mirror = mirror_of(&skeleton, &normaliser(&skeleton)).unwrap();
+        let (model, _, normalisers) = shipped();
+        let skeleton = model.skeleton();
+        let mirror = mirror_of(skeleton, &normalisers.observation).unwrap();
         let entry = |name: &str| {
             let (from, sign) = mirror.actions.entry(skeleton.joint_named(name).unwrap().index());
             (skeleton.joints()[from].name.clone(), sign)

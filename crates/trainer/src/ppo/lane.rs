@@ -76,7 +76,7 @@ impl Lane {
             self.input.extend_from_slice(&shared.rollout.inputs[row * inputs..(row + 1) * inputs]);
             self.blend.push(shared.rollout.blend[row]);
         }
-        if let Some(mirror) = shared.mirror {
+        if let Some((mirror, _)) = shared.mirror {
             let seen = self.input.len();
             self.input.resize(2 * seen, 0.0);
             let (seen, mirrored) = self.input.split_at_mut(seen);
@@ -99,14 +99,14 @@ impl Lane {
                 self.kl[actor][1] += weight;
             }
         }
-        if let Some(mirror) = shared.mirror {
+        if let Some((mirror, weight)) = shared.mirror {
             mirrored_deltas.fill(0.0);
             let pairs = means.chunks_exact(actions).zip(deltas.chunks_exact_mut(actions));
             let mirrored =
                 mirrored_means.chunks_exact(actions).zip(mirrored_deltas.chunks_exact_mut(actions));
             for ((mean, delta), (other, other_delta)) in pairs.zip(mirrored) {
-                let factor = shared.symmetry * shared.scale;
-                self.sums.asymmetry += mirror.asymmetry([mean, other], [delta, other_delta], factor);
+                self.sums.asymmetry +=
+                    mirror.asymmetry([mean, other], [delta, other_delta], weight * shared.scale);
             }
         }
         let (gradient, parent) = match self.actor_gradients.get_disjoint_mut([from, to]) {
@@ -142,9 +142,8 @@ pub(super) struct Shared<'a> {
     pub(super) gamma: f32,
     pub(super) action_std: f32,
     pub(super) behaviour_cloning: f32,
-    /// There with a symmetry loss alone.
-    pub(super) mirror: Option<&'a Mirror>,
-    pub(super) symmetry: f32,
+    /// With a symmetry loss, and its weight.
+    pub(super) mirror: Option<(&'a Mirror, f32)>,
     pub(super) scale: f32,
 }
 

@@ -81,8 +81,7 @@ impl Learner {
             } else {
                 self.config.behaviour_cloning
             },
-            mirror: self.mirror.as_ref().filter(|_| self.config.symmetry > 0.0),
-            symmetry: self.config.symmetry,
+            mirror: self.mirror.as_ref().map(|m| (m, self.config.symmetry)).filter(|(_, w)| *w > 0.0),
             scale: 1.0 / minibatch.len() as f32,
         };
         let share = minibatch.len().div_ceil(Lane::COUNT);
