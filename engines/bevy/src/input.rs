@@ -111,7 +111,8 @@ fn add_gamepad(pad: &mut GamepadState, gamepad: &Gamepad) {
     pad.left_trigger = pad.left_trigger.max(trigger(GamepadButton::LeftTrigger2));
     pad.right_trigger = pad.right_trigger.max(trigger(GamepadButton::RightTrigger2));
     for (own, button) in BUTTONS {
-        if gamepad.pressed(own) {
+        // One that is pressed and released within a frame counts too.
+        if gamepad.pressed(own) || gamepad.just_pressed(own) {
             pad.buttons.set(button, true);
         }
     }
@@ -134,7 +135,7 @@ fn add_keys(pad: &mut GamepadState, keys: &ButtonInput<KeyCode>) {
     pad.right_trigger = pad.right_trigger.max(pushed(KeyCode::ShiftLeft));
     pad.left_trigger = pad.left_trigger.max(pushed(KeyCode::KeyC));
     for (key, button) in KEYS {
-        if keys.pressed(key) {
+        if keys.pressed(key) || keys.just_pressed(key) {
             pad.buttons.set(button, true);
         }
     }
