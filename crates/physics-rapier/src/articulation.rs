@@ -96,8 +96,7 @@ pub struct Removed {
 /// // The game's world. Z is up.
 /// let mut world = PhysicsWorld { gravity: Vector::new(0.0, 0.0, -9.81), ..PhysicsWorld::new() };
 /// world.integration_parameters.dt = 1.0 / 120.0;
-/// world.integration_parameters.num_solver_iterations = 1;
-/// world.integration_parameters.num_internal_pgs_iterations = 4; // legs touch each other
+/// Drive::Torques.tune(&mut world.integration_parameters);
 /// world.colliders.insert(ColliderBuilder::cuboid(50.0, 50.0, 0.5).translation(Vector::new(0.0, 0.0, -0.5)));
 ///
 /// let model = Model::from_mjcf(HUMANOID)?;

@@ -37,6 +37,7 @@
 //! | let all limbs touch each other | those touch that do in MuJoCo, the humanoid's legs; characters touch each other |
 //! | damp a free root, let links sleep | neither |
 //! | have rigid joint limits | limits are as soft as MuJoCo's default ones |
+//! | have stiff contacts with the ground | [`Drive::tune`] makes them about as soft as MuJoCo's |
 //! | hold a foot in every direction alike | friction is 0.8 of the MJCF's, the mean of MuJoCo's pyramid |
 //! | lose impulses on links | pushes and impulses are forces |
 //! | read the files that an MJCF names | such an MJCF is refused |

@@ -177,3 +177,18 @@ fn what_cannot_be_is_refused_and_changes_nothing() {
     assert!(said(world.push_prop(crate_, Vec3::NAN)).contains("finite force"));
     assert_eq!((world.prop_count(), world.fixture_count(), world.joint_count()), (1, 0, 0));
 }
+
+/// Contacts with the ground are soft for everything in the world.
+#[test]
+fn a_stack_of_crates_rests_on_the_ground() {
+    let mut world = World::new(&humanoid());
+    for floor in 0..3 {
+        let start = Motion::at(Vec3::new(0.0, 0.0, 0.2 + 0.4 * floor as f32));
+        world.add_prop(&Prop::cube(0.4, 20.0), &start).unwrap();
+    }
+    step(&mut world, 60);
+    for floor in 0..3 {
+        let sunk = 0.2 + 0.4 * floor as f32 - at(&world, floor).z;
+        assert!((0.001..0.015).contains(&sunk), "crate {floor}: {sunk} m");
+    }
+}

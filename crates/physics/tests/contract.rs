@@ -309,3 +309,25 @@ fn hills_are_where_they_are_said_to_be() {
         }
     }
 }
+
+/// Stiff contacts of many limbs share the weight unevenly, and a crawl falls.
+#[test]
+fn feet_that_are_pressed_give_alike() {
+    let [mujoco, rapier] = models().map(|model| {
+        let mut character = Character::new(&model);
+        character.stand_at(0.0, 0.0, Heading::FORWARD, 0.0).unwrap();
+        steps(&mut character, 15);
+        let torso = body(&character, "torso");
+        character.push(torso, -1000.0 * Vec3::Z, 0.2).unwrap();
+        let mut deepest = 0.0_f32;
+        for _ in 0..8 {
+            steps(&mut character, 1);
+            for foot in ["left_foot", "right_foot"] {
+                deepest = deepest.min(character.clearance_of(body(&character, foot)));
+            }
+        }
+        deepest
+    });
+    assert!(mujoco < -0.003, "{mujoco} m: the push does not press them down");
+    assert!((rapier - mujoco).abs() < 0.0015, "{rapier} m in Rapier, {mujoco} m in MuJoCo");
+}

@@ -6,13 +6,8 @@ use rapier3d::pipeline::PhysicsWorld;
 use crate::articulation::{Articulation, Drive, Sets};
 use crate::model::Model;
 
-/// Physics steps per second with [`Drive::Motors`], and Rapier's substeps in each.
+/// Physics steps per second with [`Drive::Motors`].
 const MOTORS_HZ: f32 = 60.0;
-const MOTORS_SUBSTEPS: usize = 2;
-
-/// Sweeps of Rapier's solver over the contacts in each substep. With one, legs that touch throw the character down: after
-/// 27 % of rolls, against 2 % with four. Rapier takes two contacts of one multibody for independent.
-const SWEEPS: usize = 4;
 
 /// Physics steps in a control tick with [`Drive::Motors`].
 pub(super) fn motor_steps(model: &Model) -> u32 {
@@ -31,11 +26,11 @@ pub(super) fn world(model: &Model, drive: Drive) -> (PhysicsWorld, Articulation)
 pub(crate) fn empty_world(model: &Model, drive: Drive) -> PhysicsWorld {
     let mut world = PhysicsWorld { gravity: model.gravity(), ..PhysicsWorld::new() };
     let parameters = &mut world.integration_parameters;
-    (parameters.dt, parameters.num_solver_iterations) = match drive {
-        Drive::Torques => (model.timestep_secs() as f32, 1),
-        Drive::Motors => (1.0 / (model.control_hz() * motor_steps(model) as f32), MOTORS_SUBSTEPS),
+    drive.tune(parameters);
+    parameters.dt = match drive {
+        Drive::Torques => model.timestep_secs() as f32,
+        Drive::Motors => 1.0 / (model.control_hz() * motor_steps(model) as f32),
     };
-    parameters.num_internal_pgs_iterations = SWEEPS;
     for mut collider in model.ground() {
         collider.set_collision_groups(InteractionGroups::all());
         world.colliders.insert(collider);

@@ -19,7 +19,7 @@ use bevy_rapier3d::plugin::{
     NoUserData, PhysicsSet, RapierConfiguration, RapierContextInitialization, RapierPhysicsPlugin,
     TimestepMode,
 };
-use bevy_rapier3d::prelude::{ActiveEvents, CollisionGroups, IntegrationParameters};
+use bevy_rapier3d::prelude::{ActiveEvents, CollisionGroups};
 use physics_rapier::{Articulation, Drive, Model, ModelError, Sets};
 use policy_core::CharacterPack;
 use policy_core::contract::Pose;
@@ -28,12 +28,6 @@ use crate::character::PolicyCharacter;
 use crate::core_plugin::PolicySpaceSystems;
 
 use self::place::GroundPose;
-
-/// Rapier's solver iterations in a fixed step. With the four of Rapier's default characters fall more easily.
-const SOLVER_ITERATIONS: usize = 2;
-
-/// Rapier's sweeps over the contacts in each of them. With one, legs that touch throw the character down more often.
-const SWEEPS: usize = 4;
 
 /// How a character is in Rapier. Read when its body is built.
 #[derive(Component, Reflect, Clone, Debug)]
@@ -121,11 +115,7 @@ impl Plugin for PolicyRapierPlugin {
                 ..
             } = &mut world
             {
-                *integration_parameters = IntegrationParameters {
-                    num_solver_iterations: SOLVER_ITERATIONS,
-                    num_internal_pgs_iterations: SWEEPS,
-                    ..*integration_parameters
-                };
+                Drive::Motors.tune(integration_parameters);
             }
             app.insert_resource(TimestepMode::Fixed { dt: 1.0 / 64.0, substeps: 1 })
                 .add_plugins(
