@@ -310,7 +310,7 @@ fn hills_are_where_they_are_said_to_be() {
     }
 }
 
-/// Stiff contacts of many limbs share the weight unevenly, and a crawl falls.
+/// On stiffer contacts a crawl falls.
 #[test]
 fn feet_that_are_pressed_give_alike() {
     let [mujoco, rapier] = models().map(|model| {

@@ -20,8 +20,8 @@ const MOTORS_SUBSTEPS: usize = 2;
 /// 27 % of rolls, against 2 % with four. Rapier takes two contacts of one multibody for independent.
 const SWEEPS: usize = 4;
 
-/// Contacts with what is fixed, about as soft as MuJoCo's default ones: those have 8 Hz and a damping ratio of 1. Rapier's default, 60 Hz and
-/// 10, lets a crawl fall 3.6 times a minute: of many contacts of stiff limbs it loads a few.
+/// Contacts with what is fixed, about as soft as MuJoCo's default ones: a foot that is pressed by 1,000 N gives 5.2 mm, in MuJoCo 5.5 mm, and 0.1 mm
+/// with Rapier's default of 60 Hz and 10. With that default a crawl falls 3.6 times a minute.
 const CONTACT_SOFTNESS: SpringCoefficients<f32> =
     SpringCoefficients { natural_frequency: 10.0, damping_ratio: 1.0 };
 

@@ -41,7 +41,7 @@ pub(crate) const PLAYED: &[&str] = &[
 ];
 
 /// Share of the walks that begin with a push and are half-way between standing and walking, as half a stick has it.
-const HALF_SHARE: f32 = 0.4;
+const HALF_SHARE: f32 = 0.25;
 
 /// The skill that may have ended just before a start.
 const ROLL: &str = "roll";
@@ -80,7 +80,7 @@ const PUSHED_SECS: [f32; 2] = [0.07, 0.2];
 const LEAST_PUSH: f32 = 0.3;
 
 /// Share of such pushes that come from behind, within this angle, radians: they are the hardest to catch out of a run.
-const FROM_BEHIND_SHARE: f32 = 0.35;
+const FROM_BEHIND_SHARE: f32 = 0.5;
 const FROM_BEHIND_RADIANS: f32 = 0.4;
 
 /// Speed of a character that stands, metres per second.

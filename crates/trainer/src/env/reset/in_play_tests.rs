@@ -83,7 +83,7 @@ fn variants_that_stop_or_turn_start_in_the_middle_of_a_stride() {
 #[test]
 fn a_variant_that_catches_starts_in_the_middle_of_a_push_and_is_to_go_on() {
     let mut config = EnvironmentConfig::default();
-    (config.command.speed_mps, config.command.stick_share) = (1.5, 1.0);
+    (config.command.speed_mps, config.command.stick_share, config.command.stop_share) = (1.5, 1.0, 0.0);
     config.randomisation.push_newton = 600.0;
     let in_play = InPlayConfig { share: 1.0, maximum_speed_mps: None, out_of: OutOf::Push };
     let (mut starts, mut driven) = (0, 0);

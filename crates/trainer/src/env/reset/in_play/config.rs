@@ -24,7 +24,7 @@ const OUT_OF: [&str; 14] = [
 const STRIDES: [&str; 5] = ["walk", "walk", "jog", "jog", "run"];
 
 /// Nodes for [`OutOf::Push`].
-const PUSHED: [&str; 5] = ["walk", "walk", "jog", "run", "run"];
+const PUSHED: [&str; 5] = ["walk", "jog", "run", "run", "run"];
 
 /// Starts where a game starts an episodic skill, or where a variant begins to act.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
