@@ -14,7 +14,7 @@ const GRAVITY: f64 = 9.81;
 fn game() -> PhysicsWorld {
     let mut world = PhysicsWorld { gravity: Vector::new(0.0, 0.0, -9.81), ..PhysicsWorld::new() };
     world.integration_parameters.dt = 1.0 / 120.0;
-    world.integration_parameters.num_solver_iterations = 1;
+    Drive::Torques.tune(&mut world.integration_parameters);
     world
 }
 

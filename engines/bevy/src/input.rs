@@ -3,6 +3,8 @@
 //! Real gamepads need the feature `pads`, or Bevy's own `bevy_gilrs`. Without one the keys are: W A S D to walk, Shift faster, C lower,
 //! Q another style, E roll, Space get up, F jump, G punch.
 
+use core::hash::Hash;
+
 use bevy::prelude::*;
 use policy_core::{Bindings, Button, CommandMapper, GamepadState, Heading};
 
@@ -83,6 +85,11 @@ fn command(
     }
 }
 
+/// True for what is pressed, and for what was pressed and released within the frame.
+fn is_held<T: Copy + Eq + Hash + Send + Sync + 'static>(buttons: &ButtonInput<T>, button: T) -> bool {
+    buttons.pressed(button) || buttons.just_pressed(button)
+}
+
 /// Buttons of Bevy by place; policy-core names them alike, but for the triggers.
 const BUTTONS: [(GamepadButton, Button); 16] = [
     (GamepadButton::South, Button::South),
@@ -111,8 +118,7 @@ fn add_gamepad(pad: &mut GamepadState, gamepad: &Gamepad) {
     pad.left_trigger = pad.left_trigger.max(trigger(GamepadButton::LeftTrigger2));
     pad.right_trigger = pad.right_trigger.max(trigger(GamepadButton::RightTrigger2));
     for (own, button) in BUTTONS {
-        // One that is pressed and released within a frame counts too.
-        if gamepad.pressed(own) || gamepad.just_pressed(own) {
+        if is_held(gamepad.digital(), own) {
             pad.buttons.set(button, true);
         }
     }
@@ -135,7 +141,7 @@ fn add_keys(pad: &mut GamepadState, keys: &ButtonInput<KeyCode>) {
     pad.right_trigger = pad.right_trigger.max(pushed(KeyCode::ShiftLeft));
     pad.left_trigger = pad.left_trigger.max(pushed(KeyCode::KeyC));
     for (key, button) in KEYS {
-        if keys.pressed(key) || keys.just_pressed(key) {
+        if is_held(keys, key) {
             pad.buttons.set(button, true);
         }
     }
