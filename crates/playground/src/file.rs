@@ -6,7 +6,7 @@ use ron::extensions::Extensions;
 use serde::Deserialize;
 
 use super::layout::Blocks;
-use super::{Checkpoint, Pace, Paint, PaintedFixture, PlacedProp, Playground, Start, Waypoint};
+use super::{Checkpoint, Pace, Paint, PaintedFixture, PlacedProp, Playground, Start, Swinging, Waypoint};
 
 /// Largest text of a scene, bytes.
 const MOST_BYTES: usize = 1 << 20;
@@ -324,9 +324,10 @@ impl JointEntry {
 }
 
 /// The index of the prop of that name that swings.
-fn swinging(props: &[PlacedProp], name: String) -> Result<usize, SceneFileError> {
-    let swings = |prop: &PlacedProp| prop.name == name && prop.swing_m.is_some();
-    props.iter().position(swings).ok_or(SceneFileError::Swing { name })
+fn swinging(props: &[PlacedProp], name: String) -> Result<Swinging, SceneFileError> {
+    let found = props.iter().enumerate().find(|(_, prop)| prop.name == name);
+    let swings = found.and_then(|(prop, placed)| Some(Swinging { prop, radps: placed.swing_radps()? }));
+    swings.ok_or(SceneFileError::Swing { name })
 }
 
 fn count(what: &'static str, [least, most]: [usize; 2], found: usize) -> Result<(), SceneFileError> {

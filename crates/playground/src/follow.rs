@@ -1,5 +1,7 @@
 //! The way over the course, and a pad that follows it: for a tour of the scene, and to measure how a character fares on it.
 
+use std::f32::consts::PI;
+
 use glam::Vec2;
 use policy_core::contract::Motion;
 use policy_core::{GamepadState, Heading};
@@ -9,8 +11,11 @@ use serde::Deserialize;
 const JOG: f32 = 0.4;
 /// It jogs once it looks this much along its way: the cosine of the angle between them.
 const LOOKS_ALONG: f32 = 0.8;
-/// A pendulum nearer to the line of the way than this may hit what passes, metres.
-const CLEAR_M: f32 = 1.6;
+/// A walker sets off in this time, seconds, and then goes at this speed, metres per second.
+const SETS_OFF_SECS: f32 = 0.35;
+const WALK_MPS: f32 = 1.25;
+/// It sets out when it comes to a pendulum at the turn of its swing, give or take this, radians of a whole swing of 2 pi.
+const TURN_RADIANS: f32 = 0.12;
 
 /// How a stretch of the way is taken.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize)]
@@ -33,8 +38,17 @@ pub struct Waypoint {
     pub near_m: f32,
     /// The pace towards it.
     pub pace: Pace,
-    /// Index of a prop that swings across the way: it is let past first.
-    pub past: Option<usize>,
+    /// What swings across the way and is let past first.
+    pub past: Option<Swinging>,
+}
+
+/// A prop that swings across a way.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Swinging {
+    /// Its index in the scene.
+    pub prop: usize,
+    /// How fast its phase turns, radians a second: 2 pi are one swing there and back.
+    pub radps: f32,
 }
 
 /// Follows a way, waypoint after waypoint.
@@ -62,8 +76,9 @@ impl Follower {
         let waypoint = way.get(self.next)?;
         self.secs += dt_secs;
         let direction = (waypoint.at - at).normalize_or_zero();
+        let swings = waypoint.past.and_then(|past| Some((motion(past.prop)?, past.radps)));
         self.sets_out |=
-            waypoint.past.and_then(motion).is_none_or(|swinging| is_clear(&swinging, at, direction));
+            swings.is_none_or(|(motion, radps)| comes_at_the_turn(&motion, radps, at, direction));
         let jogs = waypoint.pace == Pace::Jog && direction.dot(heading.direction()) > LOOKS_ALONG;
         let push = if self.sets_out { camera.heading_from_world_2d(direction) } else { Vec2::ZERO };
         Some(GamepadState {
@@ -82,16 +97,21 @@ impl Follower {
     }
 }
 
-/// True when it is time to set out from `at` along `direction`: what swings across is about to turn back. It passes the way before a walker
-/// is there, and once more after it has gone.
-fn is_clear(swinging: &Motion, at: Vec2, direction: Vec2) -> bool {
-    let aside = |v: Vec2| direction.perp_dot(v);
-    let (place, speed) = (aside(swinging.position.truncate() - at), aside(swinging.velocity.truncate()));
-    place.abs() > CLEAR_M && place * speed > 0.0
+/// True when it is time to set out from `at` along `direction`: what swings across is at the turn of its swing, far aside, when the walker
+/// comes to it.
+fn comes_at_the_turn(swinging: &Motion, radps: f32, at: Vec2, direction: Vec2) -> bool {
+    let off = swinging.position.truncate() - at;
+    let secs = SETS_OFF_SECS + direction.dot(off) / WALK_MPS;
+    // The place aside is the cosine of the phase, so it turns at every multiple of pi.
+    let (place, speed) = (direction.perp_dot(off), direction.perp_dot(swinging.velocity.truncate()));
+    let phase = (-speed / radps).atan2(place) + radps * secs;
+    (phase / PI - (phase / PI).round()).abs() * PI < TURN_RADIANS
 }
 
 #[cfg(test)]
 mod tests {
+    use std::f32::consts::TAU;
+
     use glam::Vec3;
 
     use super::*;
@@ -133,19 +153,41 @@ mod tests {
     }
 
     #[test]
-    fn it_waits_until_what_swings_has_passed() {
-        let way = [Waypoint { past: Some(3), ..waypoint(6.0, 0.0) }];
+    fn it_waits_until_it_comes_to_what_swings_at_the_turn_of_its_swing() {
+        // From a stand, two metres and a half before a pendulum of three seconds that swings 1.5 m to either side.
+        let (radps, reach, plane) = (TAU / 3.0, 1.5, 2.5);
+        let way = [Waypoint { past: Some(Swinging { prop: 3, radps }), ..waypoint(6.0, 0.0) }];
         let view = (Vec2::ZERO, Heading::FORWARD, Heading::FORWARD);
+        let comes_after = SETS_OFF_SECS + plane / WALK_MPS;
+        for start in [0.0, 0.7, 1.9, 2.8] {
+            let mut follower = Follower::default();
+            let swing = |secs: f32| (radps * secs).sin_cos();
+            let sets_out = (0..300).map(|tick| start + 0.01 * tick as f32).find(|secs| {
+                let (sin, cos) = swing(*secs);
+                let motion =
+                    Motion::at(Vec3::new(plane, reach * cos, 1.0)).moving(-reach * radps * sin * Vec3::Y);
+                let asked = |index: usize| (index == 3).then_some(motion);
+                follower.tick(&way, view, asked, 0.01).unwrap().left_stick[1] > 0.0
+            });
+            let there = swing(sets_out.expect("it sets out within a swing") + comes_after).1;
+            assert!(there.abs() > 0.99, "it comes to it {there} of its reach aside");
+        }
+    }
+
+    #[test]
+    fn once_it_has_set_out_it_goes_on() {
+        let way = [Waypoint { past: Some(Swinging { prop: 0, radps: 2.0 }), ..waypoint(6.0, 0.0) }];
         let mut follower = Follower::default();
-        let mut push = |y: f32, mps: f32| {
-            let motion = Motion::at(Vec3::new(3.0, y, 1.0)).moving(Vec3::Y * mps);
-            let asked = |index: usize| (index == 3).then_some(motion);
-            follower.tick(&way, view, asked, 0.1).unwrap().left_stick[1]
-        };
-        assert_eq!(push(0.5, 2.0), 0.0, "it is about to pass");
-        assert_eq!(push(2.0, -1.0), 0.0, "it comes back");
-        assert_eq!(push(-2.0, -0.5), 1.0, "it has passed");
-        assert_eq!(push(-1.0, 2.0), 1.0, "on its way it goes on");
-        assert!((follower.secs_on_the_way() - 0.4).abs() < 1e-6);
+        let view = (Vec2::ZERO, Heading::FORWARD, Heading::FORWARD);
+        let mut push =
+            |motion: Option<Motion>| follower.tick(&way, view, |_| motion, 0.1).unwrap().left_stick[1];
+        let aside = Motion::at(Vec3::new(0.0, 1.0, 1.0));
+        assert_eq!(
+            push(Some(aside)),
+            0.0,
+            "it is at the turn of its swing now, and not once the walker is there"
+        );
+        assert_eq!(push(None), 1.0, "it is gone");
+        assert_eq!(push(Some(aside)), 1.0);
     }
 }

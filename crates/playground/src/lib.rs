@@ -32,7 +32,7 @@ use glam::{Quat, Vec2, Vec3};
 use policy_core::contract::{Fixture, Joint, Motion, Prop};
 
 pub use file::SceneFileError;
-pub use follow::{Follower, Pace, Waypoint};
+pub use follow::{Follower, Pace, Swinging, Waypoint};
 pub use loose::{LooseKind, put_down, thrown};
 pub use race::{Race, RaceEvent, RaceState};
 pub use wander::{WanderPath, Wanderer, Wish};
