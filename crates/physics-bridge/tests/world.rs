@@ -260,6 +260,33 @@ fn characters_stand_on_fixtures_and_sense_their_height() {
 }
 
 #[test]
+fn a_character_steps_onto_a_board_and_not_onto_what_is_higher_than_a_step() {
+    let slab = |x: f32, z: f32, half_height: f32| {
+        let solid = Solid::Cuboid { half_extents: Vec3::new(1.0, 1.0, half_height) };
+        (Prop::new(solid, 50.0), Motion::at(Vec3::new(x, 0.0, z)))
+    };
+    // A board, one overhead, a crate that the feet would be inside of; then nothing.
+    for (prop, expected) in [
+        (Some(slab(0.0, 0.05, 0.05)), 0.1),
+        (Some(slab(0.0, 2.5, 0.05)), 0.0),
+        (Some(slab(0.0, 0.3, 0.3)), 0.0),
+        (Some(slab(5.0, 0.05, 0.05)), 0.0),
+        (None, 0.0),
+    ] {
+        let (mut world, model) = world();
+        let character = world
+            .edit(|edit| {
+                prop.iter().try_for_each(|(prop, motion)| edit.add_prop(prop.clone(), *motion).map(drop))?;
+                edit.add_character(&model, 0.0, 0.0, Heading::FORWARD, 0.0)
+            })
+            .unwrap();
+        let mut state = CharacterState::new(model.skeleton());
+        world.sense_into(character, &mut state).unwrap();
+        assert!((state.ground_height - expected).abs() < 1e-3, "{prop:?}: {}", state.ground_height);
+    }
+}
+
+#[test]
 fn a_world_has_the_terrain_of_its_model() {
     let flat = humanoid();
     for terrain in [

@@ -81,6 +81,8 @@ struct PropBody {
     body: RigidBodyHandle,
     solid: Solid,
     start: Place,
+    /// How far it reaches from the origin of its body, metres.
+    reach: f32,
 }
 
 impl World {
@@ -162,14 +164,16 @@ impl World {
         Ok(())
     }
 
-    /// Writes what a policy senses of a character. The ground is what is highest below the height of its root. Allocates only when `out` was made for another skeleton.
+    /// Writes what a policy senses of a character. The ground is what is highest below the height of its
+    /// root, and a prop that it can step onto. Allocates only when `out` was made for another skeleton.
     ///
     /// # Errors
     /// When there is no such character.
     pub fn sense_into(&self, character: usize, out: &mut CharacterState) -> Result<(), WorldError> {
         sense_into(&self.world, &self.resident(character)?.articulation, out);
-        let z = out.root().position.z;
-        out.sense_ground(self.model.skeleton(), |at| self.ground_below(at.extend(z)));
+        let skeleton = self.model.skeleton();
+        let (z, top) = (out.root().position.z, out.step_top(skeleton));
+        out.sense_ground(skeleton, |at| self.footing_below(at.extend(z), top));
         Ok(())
     }
 

@@ -71,6 +71,22 @@ fn a_fixture_holds_a_prop_and_is_ground_for_a_character() {
 }
 
 #[test]
+fn a_character_steps_onto_a_board_and_not_onto_what_is_higher_than_a_step() {
+    // A board, one overhead, and a crate that the feet would be inside of.
+    for (z, half_height, expected) in [(0.05, 0.05, 0.1), (2.5, 0.05, 0.0), (0.3, 0.3, 0.0)] {
+        let mut world = World::new(&humanoid());
+        let solid = Solid::Cuboid { half_extents: Vec3::new(1.0, 1.0, half_height) };
+        world.add_prop(&Prop::new(solid, 50.0), &Motion::at(Vec3::Z * z)).unwrap();
+        let character = world.add_character().unwrap();
+        let mut state = CharacterState::new(world.model().skeleton());
+        world.sense_into(character, &mut state).unwrap();
+        assert!((state.ground_height - expected).abs() < 1e-3, "{z}: {}", state.ground_height);
+        let rises = state.ground_rises.iter().all(|rise| rise.abs() < 1e-3);
+        assert!(rises, "level below it: {:?}", state.ground_rises);
+    }
+}
+
+#[test]
 fn triangles_and_heights_are_ground_too() {
     let mut world = World::new(&humanoid());
     let triangles = FixtureShape::Triangles {

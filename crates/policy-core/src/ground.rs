@@ -18,6 +18,9 @@ pub const SHIN_LOOKAHEAD_SECS: f32 = 0.3;
 /// Most that a policy sees of a rise or drop, metres. What is higher is no step.
 pub const MAX_RISE_METRES: f32 = 0.25;
 
+/// Most that a thing that can move may rise above the lower foot to be stepped onto, metres: a board does, a crate does not.
+pub const MAX_STEP_METRES: f32 = 0.15;
+
 /// Seconds after which the ground below a body counts: where it then is at its present velocity. `None` for a body that senses
 /// no ground of its own.
 #[must_use]
@@ -68,6 +71,18 @@ impl CharacterState {
             self.ground_rises[body.index()] =
                 if rise.is_finite() { rise.clamp(-MAX_RISE_METRES, MAX_RISE_METRES) } else { 0.0 };
         }
+    }
+
+    /// Height up to which a thing that can move is ground to this character, metres, world space: [`MAX_STEP_METRES`] above the
+    /// lower foot. What is higher is in its way. A physics engine asks for it before it asks what is below.
+    ///
+    /// # Panics
+    /// When the state does not fit the skeleton.
+    #[must_use]
+    pub fn step_top(&self, skeleton: &Skeleton) -> f32 {
+        assert!(self.fits(skeleton), "a state of the skeleton");
+        let feet = skeleton.feet().iter().map(|&foot| self.body(foot).position.z);
+        feet.fold(f32::INFINITY, f32::min) + MAX_STEP_METRES
     }
 
     /// Senses level ground of this height, metres: nothing rises.
@@ -123,6 +138,16 @@ mod tests {
         state.bodies[0].position.z = 3.9;
         state.sense_ground(&skeleton, |_| 3.0);
         assert_eq!((state.ground_height, state.ground_rises.iter().all(|rise| *rise == 0.0)), (3.0, true));
+    }
+
+    #[test]
+    fn what_moves_is_ground_up_to_a_step_above_the_lower_foot() {
+        let skeleton = Skeleton::humanoid();
+        let mut state = CharacterState::new(&skeleton);
+        let [left, right] = [skeleton.feet()[0], skeleton.feet()[1]];
+        state.body_mut(left).position.z = 0.4;
+        state.body_mut(right).position.z = 0.05;
+        assert!((state.step_top(&skeleton) - 0.05 - MAX_STEP_METRES).abs() < 1e-6);
     }
 
     #[test]

@@ -27,6 +27,23 @@ fn crate_at(app: &mut App, at: Vec3) -> Entity {
 }
 
 #[test]
+fn it_steps_onto_a_board_that_moves_and_no_other_character_is_its_ground() {
+    let mut app = game(64.0);
+    app.world_mut().spawn((
+        RigidBody::Dynamic,
+        Collider::cuboid(1.0, 0.05, 1.0),
+        ColliderMassProperties::Mass(60.0),
+        Transform::from_xyz(0.0, 0.05, 0.0),
+    ));
+    let characters = [Vec3::Y * 0.1, Vec3::X * 3.0].map(|at| spawn(&mut app, at));
+    run(&mut app, 1.0);
+    let ground = characters.map(|character| {
+        app.world().get::<PolicyController>(character).expect("a controller").sensed.ground_height
+    });
+    assert!((ground[0] - 0.1).abs() < 0.01 && ground[1].abs() < 0.01, "{ground:?}");
+}
+
+#[test]
 fn it_pushes_a_crate() {
     let mut app = game(64.0);
     let character = spawn(&mut app, Vec3::ZERO);

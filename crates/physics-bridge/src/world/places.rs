@@ -40,6 +40,10 @@ pub(super) struct CharacterPlace {
 pub(super) struct PropPlace {
     pub body: usize,
     pub span: Span,
+    /// MuJoCo's geoms.
+    pub geoms: Range<usize>,
+    /// How far it reaches from the origin of its body, metres.
+    pub reach: f64,
 }
 
 /// A fixture.
@@ -110,14 +114,15 @@ impl Places {
             let dofs = model.body_dofnum()[body] as usize;
             let numbers = [0, 1, 0, 4, 0, 0, 7][dofs];
             let span = Span { qpos: qpos..qpos + numbers, dofs: dof..dof + dofs, bodies: body..body + 1 };
-            places.props[index] = Some(PropPlace { body, span });
+            let geoms = geoms(model, body);
+            places.props[index] = Some(PropPlace { body, span, reach: reach(model, &geoms), geoms });
         }
         for (index, _) in scene.fixtures.iter() {
             let body = find(model, &fixture_name(index))?;
             places.owners[body] = Owner::Fixture(index);
-            let first = model.body_geomadr()[body] as usize;
-            let geoms = first..first + model.body_geomnum()[body] as usize;
-            places.fixtures[index] = Some(FixturePlace { circle: circle(model, body, &geoms), geoms });
+            let geoms = geoms(model, body);
+            let [x, y, _] = model.body_pos()[body];
+            places.fixtures[index] = Some(FixturePlace { circle: ([x, y], reach(model, &geoms)), geoms });
         }
         for (index, slot) in scene.joints.iter() {
             if let JointRecord::Rope(_) = slot.value {
@@ -173,14 +178,16 @@ fn qpos_bodies(model: &MjModel) -> Box<[usize]> {
     bodies.into()
 }
 
-/// A circle around the geoms of a body that never moves, seen from above.
-fn circle(model: &MjModel, body: usize, geoms: &Range<usize>) -> ([f64; 2], f64) {
-    let [x, y, _] = model.body_pos()[body];
-    let reach = |geom: usize| {
-        let bounding = model.geom_rbound()[geom];
-        DVec3::from(model.geom_pos()[geom]).length() + bounding
-    };
-    ([x, y], geoms.clone().map(reach).fold(0.0, f64::max))
+/// The geoms of a body.
+fn geoms(model: &MjModel, body: usize) -> Range<usize> {
+    let first = model.body_geomadr()[body] as usize;
+    first..first + model.body_geomnum()[body] as usize
+}
+
+/// How far geoms of one body reach from its origin, metres.
+fn reach(model: &MjModel, geoms: &Range<usize>) -> f64 {
+    let reach = |geom: usize| DVec3::from(model.geom_pos()[geom]).length() + model.geom_rbound()[geom];
+    geoms.clone().map(reach).fold(0.0, f64::max)
 }
 
 /// A hash of what makes up a model.

@@ -10,6 +10,7 @@ use super::World;
 use super::contact::{Part, part};
 use super::forces::Movable;
 use super::places::Places;
+use super::scene::Scene;
 use super::solids::vec3;
 use crate::description::model::Model;
 use crate::description::world_error::WorldError;
@@ -68,6 +69,35 @@ impl World {
     }
 }
 
+/// As [`World::height_below`], and of the props that reach no higher than `top`: what a character can step onto.
+pub(super) fn footing_below(
+    data: &mut MjData<Box<MjModel>>,
+    (places, scene): (&Places, &Scene),
+    ground: &Model,
+    at: [f32; 3],
+    top: f32,
+) -> f32 {
+    let mut height = height_below(data, places, ground, at);
+    let from = at.map(f64::from);
+    for (index, _) in scene.props.present() {
+        let prop = places.prop(index);
+        let [x, y, z] = data.xpos()[prop.body];
+        // Most props are elsewhere.
+        if (from[0] - x).hypot(from[1] - y) > prop.reach || z - prop.reach > f64::from(top) {
+            continue;
+        }
+        let above = [from[0], from[1], z + 2.0 * prop.reach];
+        for geom in prop.geoms.clone() {
+            let distance = down(data, geom, &above);
+            let surface = (above[2] - distance) as f32;
+            if distance >= 0.0 && surface <= top {
+                height = height.max(surface);
+            }
+        }
+    }
+    height
+}
+
 /// As [`World::height_below`].
 pub(super) fn height_below(
     data: &mut MjData<Box<MjModel>>,
@@ -92,7 +122,7 @@ pub(super) fn height_below(
     height
 }
 
-/// How far below a point a geom of a fixture is; negative when it is not below.
+/// How far below a point a geom is; negative when it is not below.
 fn down(data: &mut MjData<Box<MjModel>>, geom: usize, from: &[f64; 3]) -> f64 {
     const DOWN: [f64; 3] = [0.0, 0.0, -1.0];
     let kind = data.model().geom_type()[geom];

@@ -9,7 +9,7 @@ use policy_core::Heading;
 
 use super::World;
 use super::contact;
-use super::ray::height_below;
+use super::ray::footing_below;
 use super::recover::Standing;
 use crate::description::body_poses::rotation;
 use crate::kinematics::sense_into;
@@ -164,9 +164,10 @@ impl World {
         for (index, model) in self.scene.characters.present() {
             let state = &mut self.grounds[index];
             sense_into(&self.data, &self.places.character(index).layout, state);
-            let z = state.root().position.z;
+            let (z, top) = (state.root().position.z, state.step_top(model.skeleton()));
             state.sense_ground(model.skeleton(), |at| {
-                height_below(&mut self.data, &self.places, &self.ground, [at.x, at.y, z])
+                let parts = (&self.places, &self.scene);
+                footing_below(&mut self.data, parts, &self.ground, [at.x, at.y, z], top)
             });
         }
     }

@@ -6,7 +6,7 @@ use rapier3d::geometry::{Aabb, ColliderHandle};
 use rapier3d::parry::query::Ray;
 
 use super::shape::of_fixture;
-use super::{MOST, World, WorldError};
+use super::{MOST, PropBody, World, WorldError};
 
 /// Ground further below a point than this does not count, metres.
 const FARTHEST_M: f32 = 100.0;
@@ -56,5 +56,23 @@ impl World {
             Some(point.z - distance)
         });
         heights.fold(ground, f32::max)
+    }
+
+    /// Height of the ground below a point, or of the highest prop below it that reaches no higher than `top`: what a character can step onto.
+    pub(super) fn footing_below(&self, point: Vec3, top: f32) -> f32 {
+        let ray = Ray::new(Vec3::new(point.x, point.y, top), Vec3::NEG_Z);
+        let near = |prop: &&PropBody| {
+            let off = self.world.bodies[prop.body].translation() - ray.origin;
+            off.truncate().length_squared() <= prop.reach * prop.reach && off.z <= prop.reach
+        };
+        let colliders =
+            self.props.iter().filter(near).flat_map(|prop| self.world.bodies[prop.body].colliders());
+        let heights = colliders.filter_map(|&collider| {
+            let collider = &self.world.colliders[collider];
+            let distance = collider.shape().cast_ray(collider.position(), &ray, FARTHEST_M, true)?;
+            // A ray that begins inside of a prop meets it at once: that one is higher.
+            (distance > 0.0).then_some(top - distance)
+        });
+        heights.fold(self.ground_below(point), f32::max)
     }
 }

@@ -30,10 +30,12 @@ impl World {
             .linvel(motion.velocity)
             .angvel(motion.spin)
             .can_sleep(false);
+        let around = collider.shape.compute_local_bounding_sphere();
+        let reach = around.center().length() + around.radius();
         let world = &mut self.world;
         let body = world.bodies.insert(body);
         world.colliders.insert_with_parent(collider, body, &mut world.bodies);
-        self.props.push(PropBody { body, solid: prop.solid.clone(), start });
+        self.props.push(PropBody { body, solid: prop.solid.clone(), start, reach });
         Ok(self.props.len() - 1)
     }
 

@@ -3,7 +3,7 @@
 use bevy::prelude::*;
 use bevy_rapier3d::plugin::context::systemparams::WriteRapierContext;
 use bevy_rapier3d::prelude::{ExternalForce, ExternalImpulse};
-use bevy_rapier3d::rapier::geometry::Ray;
+use bevy_rapier3d::rapier::geometry::{Collider, ColliderHandle, Ray};
 use bevy_rapier3d::rapier::pipeline::QueryFilter;
 use physics_rapier::{Cause, Diverged};
 
@@ -21,16 +21,24 @@ const GROUND_RANGE: f32 = 200.0;
 /// Senses the characters whose control tick is due, and the ground below them.
 pub(super) fn sense(
     mut characters: Query<(Entity, &CharacterReport, &mut PolicyController, &mut RapierArticulation)>,
+    parts: Query<(), With<PolicyBody>>,
     mut context: WriteRapierContext,
     mut errors: MessageWriter<CharacterError>,
 ) {
     let Some(world) = world_of(&mut context) else { return };
     let (set, joints) = (&world.rigidbody_set.bodies, &world.joints.multibody_joints);
-    // A character may stand on what is fixed or kinematic, not on what it kicks.
-    let filter = QueryFilter::exclude_dynamic().exclude_sensors();
-    let dispatcher = world.simulation.narrow_phase.query_dispatcher();
-    let broad_phase = &world.simulation.broad_phase;
-    let query = broad_phase.as_query_pipeline(dispatcher, set, &world.colliders.colliders, filter);
+    // A character stands on what is fixed or kinematic, and on what moves where it is no higher than a step: a board, not a crate that it
+    // kicks, nor another character.
+    let is_prop = |_: ColliderHandle, collider: &Collider| {
+        Entity::try_from_bits(collider.user_data as u64).is_none_or(|entity| !parts.contains(entity))
+    };
+    let colliders = &world.colliders.colliders;
+    let query = |filter| {
+        let dispatcher = world.simulation.narrow_phase.query_dispatcher();
+        world.simulation.broad_phase.as_query_pipeline(dispatcher, set, colliders, filter)
+    };
+    let loose = query(QueryFilter::only_dynamic().exclude_sensors().predicate(&is_prop));
+    let query = query(QueryFilter::exclude_dynamic().exclude_sensors());
     for (entity, report, mut controller, mut own) in &mut characters {
         if controller.due == 0 || own.fault.is_some() {
             continue;
@@ -50,12 +58,23 @@ pub(super) fn sense(
         match own.articulation.sense_into(set, joints, ground, &mut controller.sensed) {
             Ok(()) => {
                 axes::turn_state(&mut controller.sensed);
-                let (level, from) = (ground, controller.sensed.root().position.z);
-                let below = |at: Vec2| {
-                    let ray = Ray::new(axes::to_bevy(at.extend(from)), Vec3::NEG_Y);
-                    query.cast_ray(&ray, GROUND_RANGE, true).map_or(level, |(_, distance)| from - distance)
+                let skeleton = own.articulation.model().skeleton();
+                let root = controller.sensed.root().position;
+                let top = controller.sensed.step_top(skeleton);
+                let ray = |at: Vec2, from: f32| Ray::new(axes::to_bevy(at.extend(from)), Vec3::NEG_Y);
+                let stepped_onto = |at: Vec2, ground: f32| {
+                    let met = loose.intersect_ray(ray(at, top), GROUND_RANGE, true);
+                    // A ray that begins inside of something meets it at once: that one is higher.
+                    let distances =
+                        met.map(|(.., hit)| hit.time_of_impact).filter(|distance| *distance > 0.0);
+                    distances.fold(ground, |height, distance| height.max(top - distance))
                 };
-                controller.sensed.set_ground(own.articulation.model().skeleton(), level, |_, at| below(at));
+                let level = stepped_onto(root.truncate(), ground);
+                let below = |at: Vec2| {
+                    let met = query.cast_ray(&ray(at, root.z), GROUND_RANGE, true);
+                    stepped_onto(at, met.map_or(ground, |(_, distance)| root.z - distance))
+                };
+                controller.sensed.set_ground(skeleton, level, |_, at| below(at));
             }
             Err(removed) => {
                 own.fault = Some(Fault::Stand);
