@@ -79,6 +79,12 @@ impl OnGraph<'_> {
     pub(crate) fn crosses(&self) -> bool {
         self.graph.edge_at(self.position).is_some_and(|edge| edge.transit)
     }
+
+    /// Nearest to the beginning of an edge that is only crossed, and on the way over it.
+    pub(crate) fn is_about_to_cross(&self) -> bool {
+        let [here, there] = [self.position, self.goal].map(GraphPosition::nearest_node);
+        self.graph.edge_between(here, there).is_some_and(|edge| edge.transit)
+    }
 }
 
 /// How far a character is from what it is asked to do, and how long it has done it, each in [0, 1].

@@ -5,6 +5,7 @@ use alloc::sync::Arc;
 use alloc::vec::Vec;
 
 use crate::action::ActionScaling;
+use crate::agility::OnGraph;
 use crate::blend::Blend;
 use crate::command::Command;
 use crate::controller_state::{ControllerState, StateError};
@@ -216,8 +217,10 @@ impl Controller {
             return false;
         }
         let heights = Heights::of(self.pack.skeleton(), state);
+        let TickReport { position, goal, .. } = self.state.report;
+        let place = OnGraph { graph: self.pack.graph(), position, goal };
         self.state.unevenness = match self.config.footing {
-            true => next_unevenness(self.state.unevenness, state, dt),
+            true => next_unevenness(self.state.unevenness, place, state, dt),
             false => 0.0,
         };
         self.state.settle_secs = (self.state.settle_secs - dt).max(0.0);

@@ -2,6 +2,7 @@
 //!
 //! On level ground the gait acts alone, with the bits that it has without a variant.
 
+use crate::agility::OnGraph;
 use crate::state::CharacterState;
 use crate::variants::{crossed, within};
 
@@ -11,9 +12,18 @@ const ROUGH_RISES: [f32; 2] = [0.01, 0.03];
 /// Time from level to rough, and back, seconds. What is seen ahead is reached soon, and one step seldom comes alone.
 const CROSS_SECS: [f32; 2] = [0.1, 3.0];
 
-/// How uneven the ground is, in [0, 1], after a tick of `dt` seconds.
-pub(crate) fn next_unevenness(before: f32, state: &CharacterState, dt: f32) -> f32 {
-    crossed(before, within(steepest(state), ROUGH_RISES), CROSS_SECS, dt)
+/// Time from rough to level on an edge that is only crossed, seconds.
+const LEAVE_OFF_SECS: f32 = 0.5;
+
+/// How uneven the ground is to a character, in [0, 1], after a tick of `dt` seconds.
+///
+/// An edge that is only crossed, as between a crouch and a crawl, was trained with the gaits at its ends. A variant has drifted off it, and falls
+/// there. So the ground counts as level on such an edge, and from half-way to its beginning.
+pub(crate) fn next_unevenness(before: f32, place: OnGraph<'_>, state: &CharacterState, dt: f32) -> f32 {
+    match place.crosses() || place.is_about_to_cross() {
+        true => crossed(before, 0.0, [CROSS_SECS[0], LEAVE_OFF_SECS], dt),
+        false => crossed(before, within(steepest(state), ROUGH_RISES), CROSS_SECS, dt),
+    }
 }
 
 /// The greatest rise or drop that a character senses, metres.

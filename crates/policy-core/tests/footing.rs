@@ -65,6 +65,36 @@ fn a_gait_acts_alone_on_level_ground_and_as_its_variant_on_rough_ground() {
 }
 
 #[test]
+fn on_the_way_over_an_edge_that_is_only_crossed_the_ground_counts_as_level() {
+    let roll_shares = |transit: bool| {
+        let mut manifest = common::manifest();
+        manifest.policies[1].rough_ground = Some("roll".into());
+        manifest.policies[0].fall_height = Some(0.2);
+        manifest.edges[0].transit = transit;
+        let pack = Arc::new(CharacterPack::from_parts(manifest, common::tensors(0.0)).unwrap());
+        let mut controller = Controller::new(pack);
+        let mut towards = |coordinate: f32, ticks: usize| -> Vec<f32> {
+            let goal = Goal::Path { path: PathId::new(0), coordinate };
+            let command = Command { goal, ..Command::default() };
+            let share = |_| {
+                controller.tick(&before_a_step(), &command, DT);
+                let walks = controller.report().position.blend();
+                let of_walk: f32 =
+                    walks.terms().iter().filter(|t| t.policy.index() == 1).map(|t| t.weights[0]).sum();
+                weight(&acted(&controller), roll()) / of_walk.max(1e-6)
+            };
+            (0..ticks).map(share).collect()
+        };
+        assert_eq!(*towards(1.0, 120).last().unwrap(), 1.0, "it walks on rough ground");
+        towards(0.0, 18)
+    };
+    let (rested_on, crossed) = (roll_shares(false), roll_shares(true));
+    assert!((rested_on[2] - 1.0).abs() < 1e-5, "{rested_on:?}");
+    assert!(crossed[2] > 0.5 && crossed[2] < 0.95, "it leaves off within half a second: {crossed:?}");
+    assert_eq!(crossed[17], 0.0);
+}
+
+#[test]
 fn without_footing_or_without_a_variant_nothing_changes() {
     let mut off = controller(false);
     let mut without = Controller::new(Arc::new(common::pack(0.0)));
