@@ -124,7 +124,9 @@ pub use fixed_rate::FixedRate;
 pub use gamepad_state::{Button, Buttons, GamepadState};
 pub use give_way::GiveWay;
 pub use graph::PolicyGraph;
-pub use ground::{FOOT_LOOKAHEAD_SECS, MAX_RISE_METRES, SHIN_LOOKAHEAD_SECS, ground_lookahead_secs};
+pub use ground::{
+    FOOT_LOOKAHEAD_SECS, MAX_RISE_METRES, MAX_STEP_METRES, SHIN_LOOKAHEAD_SECS, ground_lookahead_secs,
+};
 pub use heading::Heading;
 pub use ids::{BodyId, NodeId, PathId, PolicyId, SkillId};
 pub use kernel::Arithmetic;
