@@ -83,7 +83,8 @@ pub(super) fn footing_below(
         let prop = places.prop(index);
         let [x, y, z] = data.xpos()[prop.body];
         // Most props are elsewhere.
-        if (from[0] - x).hypot(from[1] - y) > prop.reach || z - prop.reach > f64::from(top) {
+        let [aside, ahead] = [from[0] - x, from[1] - y];
+        if aside * aside + ahead * ahead > prop.reach * prop.reach || z - prop.reach > f64::from(top) {
             continue;
         }
         let above = [from[0], from[1], z + 2.0 * prop.reach];
