@@ -74,7 +74,7 @@ impl CharacterState {
     }
 
     /// Height up to which a thing that can move is ground to this character, metres, world space: [`MAX_STEP_METRES`] above the
-    /// lower foot. What is higher is in its way. A physics engine asks for it before it asks what is below.
+    /// lower foot. What is higher is in its way; to a character without feet all of it is. A physics engine asks for it before it asks what is below.
     ///
     /// # Panics
     /// When the state does not fit the skeleton.
@@ -82,7 +82,7 @@ impl CharacterState {
     pub fn step_top(&self, skeleton: &Skeleton) -> f32 {
         assert!(self.fits(skeleton), "a state of the skeleton");
         let feet = skeleton.feet().iter().map(|&foot| self.body(foot).position.z);
-        feet.fold(f32::INFINITY, f32::min) + MAX_STEP_METRES
+        feet.reduce(f32::min).map_or(f32::NEG_INFINITY, |lower| lower + MAX_STEP_METRES)
     }
 
     /// Senses level ground of this height, metres: nothing rises.
@@ -98,6 +98,7 @@ mod tests {
 
     use super::*;
     use crate::observation::observe_into;
+    use crate::skeleton::Roles;
     use glam::Vec3;
 
     fn observed(state: &CharacterState) -> [f32; 223] {
@@ -148,6 +149,10 @@ mod tests {
         state.body_mut(left).position.z = 0.4;
         state.body_mut(right).position.z = 0.05;
         assert!((state.step_top(&skeleton) - 0.05 - MAX_STEP_METRES).abs() < 1e-6);
+        let roles = Roles { feet: Vec::new(), ..skeleton.roles().clone() };
+        let footless =
+            Skeleton::from_parts(skeleton.bodies().to_vec(), skeleton.joints().to_vec(), roles).unwrap();
+        assert_eq!(state.step_top(&footless), f32::NEG_INFINITY, "nothing is");
     }
 
     #[test]

@@ -23,7 +23,8 @@ impl World {
     }
 
     /// Writes what a policy senses, as [`Character::sense_into`](crate::Character::sense_into). The ground is the terrain, or
-    /// what is highest of the fixtures on it below the height of the root. Allocates only when `out` was made for another skeleton.
+    /// what is highest below the height of the root of the fixtures on it, and of the props that the character
+    /// [can step onto](CharacterState::step_top). Allocates only when `out` was made for another skeleton.
     ///
     /// # Errors
     /// When the handle is stale.

@@ -33,12 +33,12 @@ pub(super) fn sense(
         Entity::try_from_bits(collider.user_data as u64).is_none_or(|entity| !parts.contains(entity))
     };
     let colliders = &world.colliders.colliders;
-    let query = |filter| {
+    let rays_through = |filter| {
         let dispatcher = world.simulation.narrow_phase.query_dispatcher();
         world.simulation.broad_phase.as_query_pipeline(dispatcher, set, colliders, filter)
     };
-    let loose = query(QueryFilter::only_dynamic().exclude_sensors().predicate(&is_prop));
-    let query = query(QueryFilter::exclude_dynamic().exclude_sensors());
+    let loose = rays_through(QueryFilter::only_dynamic().exclude_sensors().predicate(&is_prop));
+    let query = rays_through(QueryFilter::exclude_dynamic().exclude_sensors());
     for (entity, report, mut controller, mut own) in &mut characters {
         if controller.due == 0 || own.fault.is_some() {
             continue;
