@@ -89,7 +89,10 @@ impl Workspace {
         let mut rng = Rng::new(seed, 1);
         let skeleton = self.model.skeleton();
         let scored = skeleton.discriminator_input_len();
-        let mut nodes = vec![GraphNode::new(&recipe.skill, &recipe.last().environment, EDGE_SHARES[1])];
+        let demonstrations = self.demonstrations(recipe)?;
+        let root_metres = demonstrations.root_metres();
+        let node = GraphNode::new(&recipe.skill, &recipe.last().environment, EDGE_SHARES[1]);
+        let mut nodes = vec![GraphNode { root_metres, ..node }];
         let learning = DiscriminatorLearner::new(recipe.first().discriminator.clone(), scored, None, seed, 2);
         let own =
             NodeDiscriminator { demonstrations: self.demonstrations(recipe)?, discriminator: Some(learning) };
@@ -105,7 +108,8 @@ impl Workspace {
             Some(parent) => {
                 let parent = self.skill(parent, &recipe.skill)?;
                 let (skill, before) = (&parent.recipe.skill, &parent.recipe.last().environment);
-                nodes.insert(0, GraphNode::new(skill, before, EDGE_SHARES[0]));
+                let root_metres = parent.demonstrations.root_metres();
+                nodes.insert(0, GraphNode { root_metres, ..GraphNode::new(skill, before, EDGE_SHARES[0]) });
                 let actors =
                     vec![Actor::frozen(parent.actor.clone()), Actor::learning(parent.actor, Some(0))];
                 let sizes = critic_sizes(skeleton, recipe, 1);

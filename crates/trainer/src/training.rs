@@ -166,9 +166,9 @@ impl Training {
         self.discriminators.set_config(&phase.discriminator);
         if self.recipe.paths.is_empty() {
             let last = self.shared.graph.nodes().len() - 1;
-            let node =
-                GraphNode::new(&self.recipe.skill, &phase.environment, self.shared.graph.nodes()[last].share);
-            self.shared.graph.set_node(last, node);
+            let GraphNode { share, root_metres, .. } = self.shared.graph.nodes()[last];
+            let node = GraphNode::new(&self.recipe.skill, &phase.environment, share);
+            self.shared.graph.set_node(last, GraphNode { root_metres, ..node });
         }
         let randomisation = &phase.environment.randomisation;
         let models_of = |config: &EnvironmentConfig| {
