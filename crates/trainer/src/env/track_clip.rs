@@ -124,8 +124,10 @@ impl Env {
         let Some(tracking) = self.tracking else { return (0.0, Done::No) };
         let clips = context.demonstrations[tracking.node];
         let is = TrackedState::of(&self.state);
-        self.tracking = tracking.next(clips).map(|now| now.in_pace(&is, clips).this_way_round(&is, clips));
-        let Some(now) = self.tracking else { return (0.0, Done::TimedOut) };
+        // At the end of the clip its last phase stays: the value after the time-out is that of a policy that sees the clock.
+        let Some(now) = tracking.next(clips) else { return (0.0, Done::TimedOut) };
+        let now = now.in_pace(&is, clips).this_way_round(&is, clips);
+        self.tracking = Some(now);
         let (reward, lost) = now.compare(&is, context);
         (reward, if lost { Done::Failed } else { Done::No })
     }
