@@ -159,7 +159,9 @@ fn fields_that_do_not_fit_together_are_named() {
     assert!(parse(&format!("{GOOD}{let_go}")).is_ok());
     let pushed = "environment.reset.in_play = { share = 0.5, out_of = \"push\" }\nenvironment.command.stick_share = 1.0\n";
     assert!(error(pushed).contains("push_newton"));
-    assert!(parse(&format!("{GOOD}{pushed}environment.randomisation.push_newton = 300.0\n")).is_ok());
+    let hard = "environment.randomisation.push_newton = 300.0\n";
+    assert!(parse(&format!("{GOOD}{pushed}{hard}")).is_ok());
+    assert!(error(&format!("{pushed}{hard}environment.meetings.share = 0.2")).contains("meetings"));
     assert!(error(&format!("{tracking}{let_go}")).contains("maximum_speed_mps"));
     assert!(error(&format!("{tracking}{clock}environment.reset.limp_share = 0.1")).contains("limp_share"));
     let hand_over = "environment.reset.hand_over = [{ skill = \"get_up\", share = 0.1 }]";

@@ -6,8 +6,8 @@ mod other;
 
 use glam::{Quat, Vec2, Vec3};
 use physics_bridge::{
-    Character, CharacterHandle, Contact, Model, Motion, Movable, Part, Prop, PropHandle, Solid, World,
-    WorldError,
+    Character, CharacterHandle, Contact, Diverging, Model, Motion, Movable, Part, Prop, PropHandle, Solid,
+    World, WorldError,
 };
 use policy_core::contract::Pose;
 use policy_core::{BodyId, CharacterState, Controller, Heading};
@@ -117,7 +117,8 @@ impl Company {
         &self.contacts
     }
 
-    /// One tick of all: `targets` are those of the own character, `state` what it senses. True when the physics diverged.
+    /// One tick of all: `targets` are those of the own character, `state` what it senses. True when the own character diverged.
+    /// The other one is put back by the world, and a prop that diverges is met no more.
     pub fn step(&mut self, targets: &[f32], state: &CharacterState, pause_secs: f32, rng: &mut Rng) -> bool {
         if self.ticks_left == 0 {
             let secs = self.meet(state, rng);
@@ -126,9 +127,9 @@ impl Company {
         self.ticks_left -= 1;
         self.world.actuate(self.own, targets).expect("it is never removed");
         self.other.act(&mut self.world);
-        let diverged = self.world.step() > 0;
+        self.world.step();
         self.collect_contacts();
-        diverged
+        self.has_diverged()
     }
 
     /// Puts the other character and the props out of the way.
@@ -141,6 +142,12 @@ impl Company {
         }
     }
 
+    /// True when the own character diverged in the last tick, or the world can't tell what did.
+    fn has_diverged(&self) -> bool {
+        let mut culprits = self.world.divergences().iter().map(|divergence| divergence.what);
+        culprits.any(|what| what.is_none_or(|what| what == Diverging::Character(self.own)))
+    }
+
     fn place(&self) -> Vec2 {
         Vec2::new(self.pose.qpos[0] as f32, self.pose.qpos[1] as f32)
     }
@@ -149,7 +156,14 @@ impl Company {
     fn lay(&mut self, loose: Loose, at: Vec2, rotation: Quat) {
         let height = self.world.ground().height_at(at.x, at.y) + loose.half_metres;
         let motion = Motion { rotation, ..Motion::at(at.extend(height)) };
-        self.world.place_prop(loose.prop, motion).expect("a place near the character");
+        self.place_loose(loose, motion);
+    }
+
+    /// Puts a prop somewhere, unless it diverged and was taken out.
+    fn place_loose(&mut self, loose: Loose, motion: Motion) {
+        if self.world.prop(loose.prop).is_ok() {
+            self.world.place_prop(loose.prop, motion).expect("a place near the character");
+        }
     }
 
     fn collect_contacts(&mut self) {

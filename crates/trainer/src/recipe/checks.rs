@@ -192,6 +192,13 @@ impl Recipe {
                 format!("{:?}", reset.in_play),
             ),
             (
+                reset.in_play.is_none_or(|in_play| in_play.out_of != OutOf::Push)
+                    || phase.environment.meetings.share == 0.0,
+                "environment.reset.in_play.out_of",
+                "no \"push\" beside meetings: the push would not reach the world in which they meet",
+                format!("{:?}", reset.in_play),
+            ),
+            (
                 command.clock_seconds == 0.0 || reset.limp_share == 0.0,
                 "environment.reset.limp_share",
                 "0 beside a clock",

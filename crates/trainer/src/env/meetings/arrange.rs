@@ -93,7 +93,7 @@ impl Company {
         let start = hit + (THROW_METRES * Vec2::from_angle(rng.angle())).extend(0.0);
         let rise = Vec3::Z * (0.5 * GRAVITY * secs);
         let motion = Motion::at(start).moving((hit - start) / secs + rise);
-        self.world.place_prop(self.ball.prop, motion).expect("a place near the character");
+        self.place_loose(self.ball, motion);
     }
 
     /// Lays the crate down ahead of the own character.

@@ -88,3 +88,39 @@ fn contacts_with_the_ground_bear_its_weight() {
     let [alone, met] = [character.contacts(), company.contacts()].map(lift);
     assert!(alone > 100.0 && (alone - met).abs() < 0.02 * alone, "{alone} N alone, {met} N in a world");
 }
+
+#[test]
+fn only_the_own_character_fails_by_a_divergence() {
+    let model = Model::load(assets().join("humanoid.xml")).unwrap();
+    let targets = JointTargets::new(model.skeleton());
+    let mut state = CharacterState::new(model.skeleton());
+    for own in [true, false] {
+        let mut rng = Rng::new(2, 0);
+        let mut company = Company::new(&model, &controller(), &mut rng).unwrap();
+        company.begin(&Character::new(&model), 600.0, &mut rng);
+        company.ticks_left = 600;
+        company.sense_into(&mut state);
+        let wild = company.world.characters().find(|handle| (*handle == company.own) == own).unwrap();
+        let mut pose = Character::new(&model).pose();
+        company.world.pose_into(wild, &mut pose).unwrap();
+        pose.qvel[8] = 1e5;
+        company.world.set_pose(wild, &pose.qpos, &pose.qvel).unwrap();
+        assert_eq!(company.step(&targets, &state, 600.0, &mut rng), own);
+        assert!(!company.world.divergences().is_empty(), "nothing diverged");
+    }
+}
+
+#[test]
+fn a_prop_that_was_taken_out_is_met_no_more() {
+    let model = Model::load(assets().join("humanoid.xml")).unwrap();
+    let mut rng = Rng::new(2, 0);
+    let mut company = Company::new(&model, &controller(), &mut rng).unwrap();
+    let [ball, block] = [company.ball.prop, company.block.prop];
+    company.world.edit(|edit| edit.remove_prop(ball).and_then(|()| edit.remove_prop(block))).unwrap();
+    company.begin(&Character::new(&model), 0.2, &mut rng);
+    let mut state = CharacterState::new(model.skeleton());
+    company.sense_into(&mut state);
+    for _ in 0..20 {
+        assert!(company.meet(&state, &mut rng) > 0.0);
+    }
+}
