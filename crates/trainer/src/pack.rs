@@ -13,9 +13,11 @@ use policy_core::{CharacterPack, Mlp, PackError};
 mod distil;
 mod plan;
 mod rollouts;
+mod source;
 
 pub use distil::{Agreement, DISTILLED_HIDDEN, distil};
 pub use plan::{PackPlan, PlannedPolicy};
+pub use source::trained_policy;
 
 use crate::checkpoint::{ACTOR, Checkpoint, CheckpointError, DISCRIMINATOR, EMA};
 use crate::env::Normalisers;

@@ -13,7 +13,7 @@ use physics_bridge::Model;
 use policy_core::{CharacterPack, ControllerConfig, SkillId};
 use trainer::checkpoint::CheckpointError;
 use trainer::env::Normalisers;
-use trainer::pack::{Agreement, PackPlan, PlannedPolicy, TrainedSkill, bind, distil};
+use trainer::pack::{Agreement, PackPlan, TrainedSkill, bind, distil, trained_policy};
 use trainer::workspace::CheckpointFile;
 
 use super::output::say;
@@ -59,17 +59,10 @@ pub(crate) fn run(
 ) -> Result<()> {
     let mut plan = PackPlan::load(&a.plan)?;
     let joint = plan.joint.as_ref().map(|run| newest(run)).transpose()?.flatten();
-    let together = |skill: &str| joint.as_ref().filter(|(loaded, _)| TrainedSkill::is_in(skill, loaded));
     let mut trained: Vec<TrainedSkill> = Vec::new();
-    for PlannedPolicy { name, from, skill, .. } in &plan.policies {
-        let skill = skill.as_ref().unwrap_or(name);
-        let of_run = match (from, together(skill)) {
-            (None, Some((loaded, path))) => Some(TrainedSkill::from_checkpoint(skill, loaded, path)?),
-            _ => newest(from.as_ref().unwrap_or(skill))?
-                .map(|(loaded, path)| TrainedSkill::from_checkpoint(skill, &loaded, &path))
-                .transpose()?,
-        };
-        let own = of_run.map(|trained| TrainedSkill { skill: name.clone(), ..trained });
+    for policy in &plan.policies {
+        let name = &policy.name;
+        let own = trained_policy(policy, joint.as_slice(), newest)?;
         let known = own.is_some();
         trained.extend(own);
         ensure!(

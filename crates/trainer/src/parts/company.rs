@@ -6,7 +6,7 @@ use anyhow::{Context, Result, ensure};
 use policy_core::{CharacterPack, Controller, ControllerConfig};
 
 use crate::env::WALK;
-use crate::pack::{PackPlan, PlannedPolicy, TrainedSkill, bind};
+use crate::pack::{PackPlan, TrainedSkill, bind, trained_policy};
 use crate::recipe::Recipe;
 use crate::workspace::Workspace;
 
@@ -27,8 +27,9 @@ impl Workspace {
         Ok(Some(Controller::with_config(pack, config)))
     }
 
-    /// A pack of the trained skills of a plan, each from the run that the plan takes it from, or from its own where that one is not trained;
-    /// one that is needed and not trained is an error, which names `needed_by`.
+    /// A pack of the trained skills of a plan, each from the run that `trainer pack` takes it from, or from another that trained it
+    /// where there is none. A run of parents that were trained together comes before the plan's joint run. A skill that is needed and
+    /// not trained is an error, which names `needed_by`.
     pub(super) fn pack_of(
         &self,
         plan: PackPlan,
@@ -37,14 +38,18 @@ impl Workspace {
     ) -> Result<Arc<CharacterPack>> {
         ensure!(!plan.policies.is_empty(), "{needed_by}: expected policies in {PLAN}, found none");
         let mut trained = Vec::new();
-        for PlannedPolicy { name, from, .. } in &plan.policies {
-            let mut runs = from.iter().chain([name]).map(|run| self.trained(run));
-            match runs.find_map(Result::transpose).transpose()? {
-                Some((checkpoint, path)) => {
-                    trained.push(TrainedSkill::from_checkpoint(name, &checkpoint, &path)?);
-                }
-                None => ensure!(!is_needed(name), "{needed_by} need {name}, which is not trained yet"),
+        let runs = self.parents.iter().chain(&plan.joint).map(|run| self.newest(run));
+        let joint = runs.filter_map(Result::transpose).collect::<Result<Vec<_>, _>>()?;
+        for policy in &plan.policies {
+            let name = &policy.name;
+            let mut skill = trained_policy(policy, &joint, &|run| self.newest(run))?;
+            if skill.is_none()
+                && let Some((checkpoint, path)) = self.trained(name)?
+            {
+                skill = Some(TrainedSkill::from_checkpoint(name, &checkpoint, &path)?);
             }
+            ensure!(skill.is_some() || !is_needed(name), "{needed_by} need {name}, which is not trained yet");
+            trained.extend(skill);
         }
         let plan = plan.only(|name| trained.iter().any(|skill| skill.skill == name));
         Ok(Arc::new(bind(&plan, &trained, &self.normalisers, &self.model, None)?))
@@ -98,5 +103,14 @@ mod tests {
         copy("run_steady");
         let of_pack = run();
         assert!(together.squared_distance(&of_pack) > 0.0, "the plan takes Run from elsewhere");
+        // Walk comes from the joint run also where a run of its own lies beside it.
+        let walk = || {
+            let pack = workspace.company(&recipe).unwrap().unwrap().pack().clone();
+            pack.policies()[pack.policy_named("walk").unwrap().index()].clone()
+        };
+        let together = walk();
+        let other = assets().join("checkpoints/walk_0_1.safetensors");
+        std::fs::copy(other, workspace.kept.join("walk.safetensors")).unwrap();
+        assert_eq!(together.squared_distance(&walk()), 0.0, "the plan takes Walk from the joint run");
     }
 }
