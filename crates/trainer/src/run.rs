@@ -73,10 +73,7 @@ impl Run {
         let secs = start.elapsed().as_secs_f64();
         self.secs += secs;
         self.iterations += 1;
-        let mut learned = self.training.learner.actors.iter().flat_map(|a| &a.network.parameters);
-        if !learned.all(|p| p.is_finite()) {
-            return Err(RunError::NotFinite { samples: self.training.samples }.into());
-        }
+        self.check_finite()?;
         let rate = (self.training.samples - before) as f64 / secs;
         let path = self.folder.path().join(METRICS_FILE);
         let line = metrics_line(self.training.samples, self.secs, rate, &report);
@@ -89,6 +86,19 @@ impl Run {
             self.save()?;
         }
         Ok(report)
+    }
+
+    /// Refuses numbers that no checkpoint can hold, so that the one before stays the newest.
+    fn check_finite(&mut self) -> Result<(), RunError> {
+        let samples = self.training.samples;
+        let is_finite = |numbers: &[f32]| numbers.iter().all(|number| number.is_finite());
+        for (role, network, adam) in self.training.networks_mut() {
+            let moments = adam.is_none_or(|adam| is_finite(&adam.mean) && is_finite(&adam.square));
+            if !moments || !is_finite(&network.parameters) {
+                return Err(RunError::NotFinite { role, samples });
+            }
+        }
+        Ok(())
     }
 
     /// Writes a checkpoint.

@@ -10,9 +10,12 @@ use crate::env::Demonstrations;
 use crate::nn::{Adam, DiscriminatorLoss, DiscriminatorPass, Network, sigmoid};
 use crate::ppo::BatchEvaluator;
 
-/// `-ln(max(1 - sigmoid(logit), 1e-4))`: 0 for what is surely simulated, 9.2 for what is surely a demonstration.
+/// `-ln(max(1 - sigmoid(logit), 1e-4))`: 0 for what is surely simulated, 9.2 for what is surely a demonstration; 0 for no number.
 #[must_use]
 pub fn style_reward(logit: f32) -> f32 {
+    if logit.is_nan() {
+        return 0.0;
+    }
     -(1.0 - sigmoid(logit)).max(1e-4).ln()
 }
 
@@ -179,5 +182,6 @@ mod tests {
         assert!((style_reward(0.0) - core::f32::consts::LN_2).abs() < 1e-6);
         assert!(style_reward(-50.0).abs() < 1e-6);
         assert!((style_reward(50.0) - 9.21034).abs() < 1e-3);
+        assert_eq!(style_reward(f32::NAN), 0.0);
     }
 }

@@ -42,8 +42,10 @@ pub enum RunError {
     #[error(transparent)]
     Checkpoint(#[from] CheckpointError),
     /// Training diverged.
-    #[error("after {samples} samples: expected finite parameters, found others")]
+    #[error("after {samples} samples: expected finite parameters and moments of {role}, found others")]
     NotFinite {
+        /// Role of the network.
+        role: String,
         /// Samples so far.
         samples: u64,
     },
