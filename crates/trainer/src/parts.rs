@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use anyhow::{Context, Result, anyhow, ensure};
-use policy_core::{BodyId, Skeleton};
+use policy_core::Skeleton;
 use random::Rng;
 
 use crate::amp::DiscriminatorLearner;
@@ -12,9 +12,9 @@ use crate::env::{Demonstrations, GraphNode, TerminationHeights, TrainingGraph, m
 use crate::nn::Network;
 use crate::pack::TrainedSkill;
 use crate::ppo::{Actor, Learner};
-use crate::recipe::{ClipShare, Recipe};
+use crate::recipe::{ClipShare, Phase, Recipe};
 use crate::style::{Discriminators, NodeDiscriminator};
-use crate::training::{POLICY_HIDDEN, Parts};
+use crate::training::{POLICY_HIDDEN, Parts, PhaseBodies};
 use crate::workspace::Workspace;
 
 mod company;
@@ -94,8 +94,7 @@ impl Workspace {
         let node = GraphNode::new(&recipe.skill, &recipe.last().environment, EDGE_SHARES[1]);
         let mut nodes = vec![GraphNode { root_metres, ..node }];
         let learning = DiscriminatorLearner::new(recipe.first().discriminator.clone(), scored, None, seed, 2);
-        let own =
-            NodeDiscriminator { demonstrations: self.demonstrations(recipe)?, discriminator: Some(learning) };
+        let own = NodeDiscriminator { demonstrations, discriminator: Some(learning) };
         let mut start_demonstrations = self.start_clips(recipe)?;
         let (actors, critic, scorers) = match &recipe.parent {
             None => {
@@ -131,15 +130,14 @@ impl Workspace {
         };
         let learner = Learner::new(recipe.first().ppo.clone(), actors, graph.pairs().to_vec(), critic, rng);
         let discriminators = Discriminators::new(scorers, Vec::new());
-        let (heights, pushed) = bodies(recipe, skeleton)?;
+        let bodies = bodies(recipe, skeleton)?;
         Ok(Parts {
             graph,
             learner,
             discriminators,
             start_demonstrations,
             hand_over: Vec::new(),
-            heights,
-            pushed,
+            bodies,
             company: self.company(recipe)?,
         })
     }
@@ -152,15 +150,20 @@ impl Workspace {
     }
 }
 
-/// Heights that tell standing from lying, and the bodies that are pushed, of the recipe's last phase.
-fn bodies(recipe: &Recipe, skeleton: &Skeleton) -> Result<(TerminationHeights, Vec<BodyId>)> {
-    let environment = &recipe.last().environment;
+/// Heights that tell standing from lying, and the bodies that are pushed, of each phase.
+fn bodies(recipe: &Recipe, skeleton: &Skeleton) -> Result<Vec<PhaseBodies>> {
     let unknown = |field: &'static str| {
         move |name| anyhow!("{}: expected bodies of the character in {field}, found {name}", recipe.skill)
     };
-    let heights =
-        TerminationHeights::new(&environment.termination, skeleton).map_err(unknown("min_heights"))?;
-    Ok((heights, environment.randomisation.pushed(skeleton).map_err(unknown("push_bodies"))?))
+    let of_phase = |Phase { environment, .. }: &Phase| {
+        let heights = TerminationHeights::new(&environment.termination, skeleton);
+        let pushed = environment.randomisation.pushed(skeleton);
+        Ok(PhaseBodies {
+            heights: heights.map_err(unknown("min_heights"))?,
+            pushed: pushed.map_err(unknown("push_bodies"))?,
+        })
+    };
+    recipe.phases.iter().map(of_phase).collect()
 }
 
 /// Sizes of a recipe's critic.

@@ -18,6 +18,7 @@ use crate::style::Discriminators;
 mod shared;
 
 pub use shared::Parts;
+pub use shared::{Parts, PhaseBodies};
 use shared::Shared;
 
 /// Hidden sizes of every policy.
@@ -71,16 +72,8 @@ impl Training {
     /// Starts a run.
     #[must_use]
     pub fn new(recipe: Recipe, model: &Model, normalisers: Normalisers, parts: Parts, seed: u64) -> Self {
-        let Parts {
-            graph,
-            learner,
-            discriminators,
-            start_demonstrations,
-            hand_over,
-            heights,
-            pushed,
-            company,
-        } = parts;
+        let Parts { graph, learner, discriminators, start_demonstrations, hand_over, bodies, company } =
+            parts;
         let environment = &recipe.first().environment;
         let shape = (environment.horizon, environment.num_envs);
         let skeleton = model.skeleton().clone();
@@ -93,8 +86,8 @@ impl Training {
             start_demonstrations,
             hand_over,
             normalisers,
-            heights,
-            pushed,
+            bodies,
+            phase: 0,
             company,
             skeleton,
         };
@@ -171,13 +164,13 @@ impl Training {
             self.shared.graph.set_node(last, GraphNode { root_metres, ..node });
         }
         let randomisation = &phase.environment.randomisation;
-        let models_of = |config: &EnvironmentConfig| {
-            let RandomisationConfig { terrain_metres, step_metres, slope_metres, dynamics, .. } =
-                config.randomisation;
-            [terrain_metres, step_metres, slope_metres, dynamics, config.meetings.share]
-        };
-        if before.map_or([0.0; 5], models_of) != models_of(&phase.environment) {
+        if before.map_or([0.0; 6], models_of) != models_of(&phase.environment) {
             let models = randomisation.models(&self.model)?;
+        self.shared.phase = index;
+        let earlier = self.recipe.phase_at(self.samples.saturating_sub(self.rollout.rows() as u64));
+        if self.recipe.phases[earlier].ppo.learning_rate != phase.ppo.learning_rate {
+            self.learner.actors.iter_mut().for_each(|a| a.learning_rate = phase.ppo.learning_rate);
+        }
             let demonstrations = self.discriminators.demonstrations();
             let context = self.shared.context(&phase.environment, &demonstrations);
             self.envs = VecEnv::new(&models, &self.scaling, &context, self.samples);
@@ -186,6 +179,7 @@ impl Training {
     }
 
     /// One rollout and the gradient steps after it.
+        self.shared.graph.set_edge_secs_factors(phase.environment.command.edge_secs_factors);
     ///
     /// # Errors
     /// When the model can't be set on the grounds of the phase.
@@ -297,6 +291,14 @@ fn task_share(
 fn tracking_share(config: &EnvironmentConfig) -> f32 {
     if config.reward.tracking_share > 0.0 { 0.0 } else { config.reward.tracking_weight }
 }
+/// What the bodies and worlds of the environments are made by.
+fn models_of(config: &EnvironmentConfig) -> [f32; 6] {
+    let RandomisationConfig { terrain_metres, step_metres, slope_metres, dynamics, long_steps, .. } =
+        config.randomisation;
+    let long_steps = f32::from(u8::from(long_steps && dynamics > 0.0));
+    [terrain_metres, step_metres, slope_metres, dynamics, long_steps, config.meetings.share]
+}
+
 
 /// Reward of a tick, without that for style.
 fn reward_of(config: &EnvironmentConfig, task_share: f32, terms: &RewardTerms, end: Done) -> f32 {

@@ -72,12 +72,26 @@ impl TrainingGraph {
         &self.nodes
     }
 
-    /// Replaces what training knows of a node. Name, fall height and seconds of its edges stay as they are.
+    /// Replaces what training knows of a node. Its name stays as it is, and the seconds of its edges and its fall height do until
+    /// [`TrainingGraph::set_edge_secs_factors`].
     ///
     /// # Panics
     /// When there is no such node.
     pub fn set_node(&mut self, index: usize, node: GraphNode) {
         self.nodes[index] = node;
+    }
+
+    /// Sets the seconds of all edges, by what is known of their ends and by these factors, as [`TrainingGraph::along`] does.
+    ///
+    /// # Panics
+    /// When a node has a number that no graph can have, which no checked recipe has.
+    pub fn set_edge_secs_factors(&mut self, factors: [f32; 2]) {
+        if self.lone.is_some() {
+            return;
+        }
+        let paths = self.graph.paths().iter().map(|path| (path.name().to_owned(), path.nodes().to_vec()));
+        let graph = policy_graph(&self.nodes, &self.pairs, paths.collect(), factors);
+        self.graph = graph.expect("a graph of the same nodes, with numbers of a checked recipe");
     }
 
     /// Pairs of policies that rows act between, by index: the ends of each edge, or one node twice.

@@ -70,15 +70,14 @@ impl Workspace {
         let starts = &recipe.first().environment.reset.hand_over;
         let hand_over = starts.iter().map(|start| self.hand_over(start, &graph)).collect::<Result<_>>()?;
         let discriminators = Discriminators::new(scorers, halfway);
-        let (heights, pushed) = bodies(recipe, skeleton)?;
+        let bodies = bodies(recipe, skeleton)?;
         Ok(Parts {
             graph,
             learner,
             discriminators,
             start_demonstrations,
             hand_over,
-            heights,
-            pushed,
+            bodies,
             company: self.company(recipe)?,
         })
     }

@@ -34,7 +34,7 @@ pub struct PpoConfig {
     pub action_std: f32,
     /// KL divergence from the acting policy that the actors' learning rates are adapted to.
     pub target_kl: f32,
-    /// First learning rate of the actors.
+    /// First learning rate of the actors in a run, and in a phase whose rate is another than that of the phase before.
     pub learning_rate: f32,
     /// Least learning rate of the actors.
     pub min_learning_rate: f32,

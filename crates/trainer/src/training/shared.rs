@@ -23,12 +23,19 @@ pub struct Parts {
     pub start_demonstrations: Option<Demonstrations>,
     /// Episodic skills whose ends are starts, in the recipe's order.
     pub hand_over: Vec<HandOver>,
+    /// What each phase says about the bodies, at least one.
+    pub bodies: Vec<PhaseBodies>,
+    /// Drives the characters that are met, where a phase has some.
+    pub company: Option<Controller>,
+}
+
+/// What a phase says about the bodies of the character.
+#[derive(Clone, Debug, PartialEq)]
+pub struct PhaseBodies {
     /// Heights that tell standing from lying.
     pub heights: TerminationHeights,
     /// Bodies that are pushed.
     pub pushed: Vec<BodyId>,
-    /// Drives the characters that are met, where a phase has some.
-    pub company: Option<Controller>,
 }
 
 /// What the environments share beside the discriminators' clips.
@@ -38,8 +45,9 @@ pub(super) struct Shared {
     pub(super) start_demonstrations: Option<Demonstrations>,
     pub(super) hand_over: Vec<HandOver>,
     pub(super) normalisers: Normalisers,
-    pub(super) heights: TerminationHeights,
-    pub(super) pushed: Vec<BodyId>,
+    pub(super) bodies: Vec<PhaseBodies>,
+    /// Index of the phase that is set up; the first one before one is.
+    pub(super) phase: usize,
     pub(super) company: Option<Controller>,
     pub(super) skeleton: Arc<Skeleton>,
 }
@@ -51,6 +59,7 @@ impl Shared {
         config: &'a EnvironmentConfig,
         demonstrations: &'a [&'a Demonstrations],
     ) -> EnvContext<'a> {
+        let PhaseBodies { heights, pushed } = &self.bodies[self.phase];
         EnvContext {
             config,
             graph: &self.graph,
@@ -58,8 +67,8 @@ impl Shared {
             start_demonstrations: self.start_demonstrations.as_ref(),
             hand_over: &self.hand_over,
             normalisers: &self.normalisers,
-            heights: &self.heights,
-            pushed: &self.pushed,
+            heights,
+            pushed,
             company: self.company.as_ref(),
             skeleton: &self.skeleton,
         }
