@@ -2,7 +2,7 @@
 //!
 //! The states of the characters are not kept: a resumed run starts new episodes.
 
-use std::collections::HashMap;
+use std::collections::{BTreeMap, HashMap};
 use std::path::{Path, PathBuf};
 
 use files::{read_bounded, write_atomically, write_keeping_previous};
@@ -89,6 +89,9 @@ pub struct Progress {
     /// Learning rate of the actors, their geometric mean.
     #[serde(alias = "actor_rate")]
     pub learning_rate: f32,
+    /// Learning rate of each actor by its role. Those that are missing have the mean, as in old checkpoints.
+    #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
+    pub learning_rates: BTreeMap<String, f32>,
     /// The learner's random numbers.
     pub rng: Rng,
     sizes: HashMap<String, (Vec<usize>, u64)>,
@@ -129,6 +132,7 @@ impl Checkpoint {
             samples,
             secs,
             learning_rate,
+            learning_rates: BTreeMap::new(),
             rng,
             sizes,
             halves: false,
@@ -154,6 +158,7 @@ impl Checkpoint {
         }
         let p = &self.progress;
         let mut slim = Self::new(self.networks, (p.seed, p.samples, p.secs), p.learning_rate, p.rng);
+        slim.progress.learning_rates = self.progress.learning_rates;
         slim.progress.halves = true;
         slim
     }

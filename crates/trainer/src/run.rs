@@ -114,7 +114,9 @@ impl Run {
         }
         let progress = (self.seed, training.samples, self.secs);
         let (rate, rng) = (training.learner.learning_rate(), training.learner.rng);
-        let checkpoint = Checkpoint::new(networks, progress, rate, rng);
+        let mut checkpoint = Checkpoint::new(networks, progress, rate, rng);
+        let rates = training.learning_rates_mut().into_iter();
+        checkpoint.progress.learning_rates = rates.map(|(role, rate)| (role, *rate)).collect();
         self.folder.save(&checkpoint)?;
         let folder = self.folder.path();
         plot::draw(&folder.join(METRICS_FILE), &folder.join("metrics.svg"))

@@ -143,6 +143,20 @@ impl Training {
 
     /// What characters move along.
     #[must_use]
+    /// Learning rates of the policies that learn, by their roles in a checkpoint.
+    pub fn learning_rates_mut(&mut self) -> Vec<(String, &mut f32)> {
+        let together = !self.recipe.paths.is_empty();
+        let last = self.shared.graph.nodes().len() - 1;
+        let nodes = self.shared.graph.nodes().iter().zip(&mut self.learner.actors).enumerate();
+        let learns = nodes.filter(|(index, _)| together || *index == last);
+        learns
+            .map(|(_, (node, actor))| {
+                let role = if together { format!("{}.{ACTOR}", node.name) } else { ACTOR.to_owned() };
+                (role, &mut actor.learning_rate)
+            })
+            .collect()
+    }
+
     pub fn graph(&self) -> &TrainingGraph {
         &self.shared.graph
     }

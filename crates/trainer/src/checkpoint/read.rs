@@ -51,6 +51,10 @@ pub(super) fn read(data: &[u8]) -> Result<Checkpoint, Wrong> {
         let found = format!("{} and {}", progress.learning_rate, progress.secs);
         return Err(wrong("a positive learning rate and seconds of at least 0", found));
     }
+    let is_rate = |rate: &f32| rate.is_finite() && *rate > 0.0;
+    if let Some((role, rate)) = progress.learning_rates.iter().find(|(_, rate)| !is_rate(rate)) {
+        return Err(wrong(format!("a positive learning rate of {role}"), rate.to_string()));
+    }
     if progress.sizes.len() > MOST_NETWORKS {
         return Err(wrong(format!("at most {MOST_NETWORKS} networks"), progress.sizes.len().to_string()));
     }
@@ -61,8 +65,10 @@ pub(super) fn read(data: &[u8]) -> Result<Checkpoint, Wrong> {
         let trained = read_network(role, sizes, *steps, &tensors, &progress.checksums)?;
         networks.insert(present_role(role), trained);
     }
-    let p = &progress;
-    Ok(Checkpoint::new(networks, (p.seed, p.samples, p.secs), p.learning_rate, p.rng))
+    let p = progress;
+    let mut checkpoint = Checkpoint::new(networks, (p.seed, p.samples, p.secs), p.learning_rate, p.rng);
+    checkpoint.progress.learning_rates = p.learning_rates;
+    Ok(checkpoint)
 }
 
 /// Refuses networks that are no networks, and more of them than a checkpoint may have.

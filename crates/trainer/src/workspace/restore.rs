@@ -5,7 +5,7 @@ use std::path::Path;
 
 use anyhow::{Result, bail};
 
-use crate::checkpoint::{ACTOR, CRITIC, Checkpoint, DISCRIMINATOR, EMA, PARENT_DISCRIMINATOR};
+use crate::checkpoint::{ACTOR, CRITIC, Checkpoint, DISCRIMINATOR, EMA, PARENT_DISCRIMINATOR, Progress};
 use crate::nn::Adam;
 use crate::pack::TrainedSkill;
 use crate::training::Training;
@@ -59,9 +59,19 @@ pub(super) fn restore(
         }
     }
     training.samples = checkpoint.progress.samples;
-    training.learner.actors.iter_mut().for_each(|a| a.learning_rate = checkpoint.progress.learning_rate);
-    training.learner.rng = checkpoint.progress.rng;
-    Ok(checkpoint.progress.secs)
+    let Progress { learning_rate, learning_rates, rng, secs, .. } = &checkpoint.progress;
+    if begins {
+        // A run of its own: the recipe's learning rate, and random numbers of its own seed.
+        let phase = training.recipe.phase_at(training.samples);
+        let learning_rate = training.recipe.phases[phase].ppo.learning_rate;
+        training.learning_rates_mut().into_iter().for_each(|(_, rate)| *rate = learning_rate);
+    } else {
+        for (role, rate) in training.learning_rates_mut() {
+            *rate = *learning_rates.get(&role).unwrap_or(learning_rate);
+        }
+        training.learner.rng = *rng;
+    }
+    Ok(*secs)
 }
 
 #[cfg(test)]
