@@ -48,7 +48,7 @@ impl Workspace {
         Ok(parts)
     }
 
-    /// Where a trained skill is: in its own run, else in one that trained it together with others.
+    /// Where a trained skill is: in the run that parents are to come from, in its own run, else in one that trained it together with others.
     pub(crate) fn trained(&self, name: &str) -> Result<Option<(Checkpoint, PathBuf)>> {
         if let Some(together) = self.parents.as_ref().map(|run| self.newest(run)).transpose()?.flatten()
             && TrainedSkill::is_in(name, &together.0)

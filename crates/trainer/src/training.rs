@@ -17,9 +17,8 @@ use crate::style::Discriminators;
 
 mod shared;
 
-pub use shared::Parts;
-pub use shared::{Parts, PhaseBodies};
 use shared::Shared;
+pub use shared::{Parts, PhaseBodies};
 
 /// Hidden sizes of every policy.
 pub const POLICY_HIDDEN: [usize; 2] = [128, 32];
@@ -35,6 +34,8 @@ pub struct Training {
     pub discriminators: Discriminators,
     /// Samples so far.
     pub samples: u64,
+    /// Seed of the environments' random numbers.
+    seed: u64,
     /// Index of the phase that is set up, once one is.
     phase: Option<usize>,
     shared: Shared,
@@ -69,7 +70,7 @@ pub struct IterationReport {
 }
 
 impl Training {
-    /// Starts a run.
+    /// Starts a run. Its environments draw from random numbers of `seed`.
     #[must_use]
     pub fn new(recipe: Recipe, model: &Model, normalisers: Normalisers, parts: Parts, seed: u64) -> Self {
         let Parts { graph, learner, discriminators, start_demonstrations, hand_over, bodies, company } =
@@ -98,6 +99,7 @@ impl Training {
             discriminator_inputs: vec![0.0; shape.0 * shape.1 * scored],
             turning: vec![0.0; shape.0 * shape.1],
             samples: 0,
+            seed,
             phase: None,
             learner,
             discriminators,
@@ -141,8 +143,6 @@ impl Training {
         all
     }
 
-    /// What characters move along.
-    #[must_use]
     /// Learning rates of the policies that learn, by their roles in a checkpoint.
     pub fn learning_rates_mut(&mut self) -> Vec<(String, &mut f32)> {
         let together = !self.recipe.paths.is_empty();
@@ -157,6 +157,8 @@ impl Training {
             .collect()
     }
 
+    /// What characters move along.
+    #[must_use]
     pub fn graph(&self) -> &TrainingGraph {
         &self.shared.graph
     }
@@ -169,6 +171,11 @@ impl Training {
         }
         let before = self.phase.replace(index).map(|before| &self.recipe.phases[before].environment);
         let phase = &self.recipe.phases[index];
+        self.shared.phase = index;
+        let earlier = self.recipe.phase_at(self.samples.saturating_sub(self.rollout.rows() as u64));
+        if self.recipe.phases[earlier].ppo.learning_rate != phase.ppo.learning_rate {
+            self.learner.actors.iter_mut().for_each(|a| a.learning_rate = phase.ppo.learning_rate);
+        }
         self.learner.config.clone_from(&phase.ppo);
         self.discriminators.set_config(&phase.discriminator);
         if self.recipe.paths.is_empty() {
@@ -177,23 +184,18 @@ impl Training {
             let node = GraphNode::new(&self.recipe.skill, &phase.environment, share);
             self.shared.graph.set_node(last, GraphNode { root_metres, ..node });
         }
+        self.shared.graph.set_edge_secs_factors(phase.environment.command.edge_secs_factors);
         let randomisation = &phase.environment.randomisation;
         if before.map_or([0.0; 6], models_of) != models_of(&phase.environment) {
             let models = randomisation.models(&self.model)?;
-        self.shared.phase = index;
-        let earlier = self.recipe.phase_at(self.samples.saturating_sub(self.rollout.rows() as u64));
-        if self.recipe.phases[earlier].ppo.learning_rate != phase.ppo.learning_rate {
-            self.learner.actors.iter_mut().for_each(|a| a.learning_rate = phase.ppo.learning_rate);
-        }
             let demonstrations = self.discriminators.demonstrations();
             let context = self.shared.context(&phase.environment, &demonstrations);
-            self.envs = VecEnv::new(&models, &self.scaling, &context, self.samples);
+            self.envs = VecEnv::new(&models, &self.scaling, &context, self.seed.wrapping_add(self.samples));
         }
         Ok(())
     }
 
     /// One rollout and the gradient steps after it.
-        self.shared.graph.set_edge_secs_factors(phase.environment.command.edge_secs_factors);
     ///
     /// # Errors
     /// When the model can't be set on the grounds of the phase.
@@ -289,6 +291,14 @@ impl Training {
     }
 }
 
+/// What the bodies and worlds of the environments are made by.
+fn models_of(config: &EnvironmentConfig) -> [f32; 6] {
+    let RandomisationConfig { terrain_metres, step_metres, slope_metres, dynamics, long_steps, .. } =
+        config.randomisation;
+    let long_steps = f32::from(u8::from(long_steps && dynamics > 0.0));
+    [terrain_metres, step_metres, slope_metres, dynamics, long_steps, config.meetings.share]
+}
+
 /// Weight of the task reward at a position. A character that turns gives a part of the style's.
 fn task_share(
     config: &EnvironmentConfig,
@@ -305,14 +315,6 @@ fn task_share(
 fn tracking_share(config: &EnvironmentConfig) -> f32 {
     if config.reward.tracking_share > 0.0 { 0.0 } else { config.reward.tracking_weight }
 }
-/// What the bodies and worlds of the environments are made by.
-fn models_of(config: &EnvironmentConfig) -> [f32; 6] {
-    let RandomisationConfig { terrain_metres, step_metres, slope_metres, dynamics, long_steps, .. } =
-        config.randomisation;
-    let long_steps = f32::from(u8::from(long_steps && dynamics > 0.0));
-    [terrain_metres, step_metres, slope_metres, dynamics, long_steps, config.meetings.share]
-}
-
 
 /// Reward of a tick, without that for style.
 fn reward_of(config: &EnvironmentConfig, task_share: f32, terms: &RewardTerms, end: Done) -> f32 {
@@ -321,3 +323,6 @@ fn reward_of(config: &EnvironmentConfig, task_share: f32, terms: &RewardTerms, e
     let cost = fall + reward.foot_slip_cost * terms.foot_slip_mps;
     task_share * terms.task + reward.tracking_weight * terms.tracking - cost
 }
+
+#[cfg(test)]
+mod tests;

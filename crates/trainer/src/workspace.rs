@@ -17,6 +17,9 @@ mod restore;
 
 use restore::{restore, skill_alone};
 
+/// Seed of a run that is given none.
+const DEFAULT_SEED: u64 = 1;
+
 /// What a new run begins with.
 #[derive(Debug)]
 pub enum Start {
@@ -142,11 +145,11 @@ impl Workspace {
     }
 
     /// Makes the run of a recipe ready and locks its folder. With [`Existing::Resume`] it continues from its newest checkpoint,
-    /// or from the kept one; otherwise it starts anew.
+    /// or from the kept one; otherwise it starts anew. Without a seed it has that of the checkpoint that it continues, or 1.
     ///
     /// # Errors
     /// As [`Workspace::prepare_named`].
-    pub fn prepare(&self, recipe: Recipe, seed: u64, existing: Existing) -> Result<Run> {
+    pub fn prepare(&self, recipe: Recipe, seed: Option<u64>, existing: Existing) -> Result<Run> {
         let name = recipe.skill.clone();
         let kept = if existing == Existing::Resume { self.newest(&name)? } else { None };
         let start = kept.map_or(Start::Parents, Start::Continue);
@@ -163,7 +166,7 @@ impl Workspace {
         from: &str,
         samples: u64,
         recipe: Recipe,
-        seed: u64,
+        seed: Option<u64>,
         existing: Existing,
     ) -> Result<Run> {
         let name = recipe.skill.clone();
@@ -172,7 +175,7 @@ impl Workspace {
     }
 
     /// Makes a run of this name ready and locks its folder. With [`Existing::Resume`] and a run there it continues that; else
-    /// it begins as `start` says.
+    /// it begins as `start` says. An existing run is deleted with [`Existing::Overwrite`] once the new one is ready.
     ///
     /// # Errors
     /// When a run is there and `existing` refuses it, another trainer holds the folder, or something that the run needs is
@@ -181,7 +184,7 @@ impl Workspace {
         &self,
         name: &str,
         recipe: Recipe,
-        seed: u64,
+        seed: Option<u64>,
         existing: Existing,
         start: Start,
     ) -> Result<Run> {
@@ -217,22 +220,26 @@ impl Workspace {
             }
             (None, Start::Parents) => None,
         };
+        let of_checkpoint =
+            earlier.as_ref().filter(|_| !begins).map(|(checkpoint, _)| checkpoint.progress.seed);
+        let seed = seed.or(of_checkpoint).unwrap_or(DEFAULT_SEED);
         // A resumed run must not meet the same episodes again.
         let seed_now = seed.wrapping_add(earlier.as_ref().map_or(0, |(c, _)| c.progress.samples));
         let parts = self.parts(&recipe, seed_now)?;
         let mut training = Training::new(recipe, &self.model, self.normalisers.clone(), parts, seed_now);
+        let secs = match &earlier {
+            Some((checkpoint, path)) => restore(&mut training, checkpoint, path, begins)?,
+            None => 0.0,
+        };
         if existing == Existing::Overwrite {
             folder.clear()?;
         }
         if earlier.is_none() || !folder.path().join(METRICS_FILE).exists() {
-            folder.write("seed.txt", &format!("{seed}\n"))?;
             folder.write(METRICS_FILE, &format!("{METRICS}\n"))?;
         }
+        folder.cut_metrics(training.samples)?;
+        folder.write("seed.txt", &format!("{seed}\n"))?;
         folder.write("recipe.toml", &text)?;
-        let secs = match earlier {
-            Some((checkpoint, path)) => restore(&mut training, &checkpoint, &path, begins)?,
-            None => 0.0,
-        };
         Ok(Run::new(training, folder, seed, secs, notes))
     }
 }

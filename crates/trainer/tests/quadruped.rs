@@ -105,7 +105,7 @@ fn a_quadruped_is_trained_and_bound() {
         parents: None,
     };
     let recipe = Recipe::parse(Path::new("trot.toml"), RECIPE).unwrap();
-    let mut run = workspace.prepare(recipe, 1, Existing::Refuse).unwrap();
+    let mut run = workspace.prepare(recipe, Some(1), Existing::Refuse).unwrap();
     let before = run.training.learner.actor().clone();
     for _ in 0..2 {
         let report = run.advance().unwrap();

@@ -50,7 +50,7 @@ fn every_recipe_runs_and_binds_into_a_pack() {
     for recipe in order {
         let recipe = small(recipe);
         let (skill, recipe_paths) = (recipe.skill.clone(), recipe.paths.clone());
-        let mut run = workspace.prepare(recipe.clone(), 3, Existing::Refuse).unwrap();
+        let mut run = workspace.prepare(recipe.clone(), Some(3), Existing::Refuse).unwrap();
         let actors = |run: &Run| -> Vec<Network> {
             let learning = run.training.learner.actors.iter().filter(|a| !a.frozen);
             learning.map(|a| a.network.clone()).collect()
@@ -74,9 +74,9 @@ fn every_recipe_runs_and_binds_into_a_pack() {
         let (learned, samples, metrics) =
             (actors(&run), run.training.samples, run.folder.path().join("metrics.csv"));
         // A run holds its folder until it is dropped.
-        assert!(workspace.prepare(recipe.clone(), 3, Existing::Resume).is_err(), "{skill}");
+        assert!(workspace.prepare(recipe.clone(), Some(3), Existing::Resume).is_err(), "{skill}");
         drop(run);
-        let resumed = workspace.prepare(recipe, 3, Existing::Resume).unwrap();
+        let resumed = workspace.prepare(recipe, Some(3), Existing::Resume).unwrap();
         assert_eq!(actors(&resumed), learned, "{skill}");
         assert_eq!(resumed.training.samples, samples, "{skill}");
         let checkpoint = workspace.checkpoint(&skill);
@@ -144,21 +144,22 @@ fn slim_checkpoints_are_enough_to_continue(workspace: &Workspace, folder: &Path)
     }
     let alone = Workspace { kept, runs: folder.join("runs_alone"), ..workspace.clone() };
     for skill in ["locomotion", "get_up"] {
-        let mut run = alone.prepare(small(alone.recipe(skill).unwrap()), 3, Existing::Resume).unwrap();
+        let mut run = alone.prepare(small(alone.recipe(skill).unwrap()), Some(3), Existing::Resume).unwrap();
         run.advance().unwrap();
         assert_eq!(run.training.samples > 288, skill == "locomotion", "{skill}");
     }
-    let missing = alone.prepare(small(alone.recipe("jog").unwrap()), 3, Existing::Resume);
+    let missing = alone.prepare(small(alone.recipe("jog").unwrap()), Some(3), Existing::Resume);
     assert!(missing.is_ok(), "its parent was trained together with others");
     drop(missing);
 
     let jog = || small(alone.recipe("jog").unwrap());
-    let run = alone.prepare_from("locomotion", 7, jog(), 3, Existing::Overwrite).unwrap();
+    let run = alone.prepare_from("locomotion", 7, jog(), Some(3), Existing::Overwrite).unwrap();
     let joint = Checkpoint::load(&alone.kept.join("locomotion.safetensors")).unwrap();
     assert_eq!(run.training.learner.actors[1].network, joint.networks["jog.actor"].network);
     assert_eq!(run.training.samples, 7, "a run of its own");
     drop(run);
-    let unknown = alone.prepare_from("gallop", 0, jog(), 3, Existing::Overwrite).unwrap_err().to_string();
+    let unknown =
+        alone.prepare_from("gallop", 0, jog(), Some(3), Existing::Overwrite).unwrap_err().to_string();
     assert!(unknown.contains("named gallop") && unknown.contains("kept_alone"), "{unknown}");
 }
 

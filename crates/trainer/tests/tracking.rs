@@ -16,7 +16,7 @@ fn a_character_that_starts_in_its_clip_tracks_it_until_its_error_is_too_large() 
     let text = "skill = \"walk\"\nclips = [{ name = \"walk\" }]\n[[phases]]\nsamples = 100000\n\
         environment.reward = { task_weight = 0.0, tracking_weight = 1.0 }\n";
     let recipe = small(Recipe::parse(Path::new("x.toml"), text).unwrap());
-    let best = best_tracking(&mut workspace.prepare(recipe, 1, Existing::Overwrite).unwrap());
+    let best = best_tracking(&mut workspace.prepare(recipe, Some(1), Existing::Overwrite).unwrap());
     assert!((0.5..1.0).contains(&best), "{best}");
 }
 
@@ -39,7 +39,7 @@ fn trackers_track_the_clips_of_the_nodes_they_rest_at() {
     let idle =
         "skill = \"idle\"\nparent = \"walk\"\nclips = [{ name = \"idle\" }]\n[[phases]]\nsamples = 24\n";
     for skill in [walk, idle] {
-        let mut run = workspace.prepare(recipe(skill), 1, Existing::Overwrite).unwrap();
+        let mut run = workspace.prepare(recipe(skill), Some(1), Existing::Overwrite).unwrap();
         run.advance().unwrap();
         run.save().unwrap();
     }
@@ -50,14 +50,20 @@ fn trackers_track_the_clips_of_the_nodes_they_rest_at() {
         (reward.tracking_share, reward.tracking_weight) = (share, 0.5);
     };
     all.phases[0].environment.reset.along_path = true;
-    assert_eq!(best_tracking(&mut workspace.prepare(all.clone(), 1, Existing::Overwrite).unwrap()), 0.0);
+    assert_eq!(
+        best_tracking(&mut workspace.prepare(all.clone(), Some(1), Existing::Overwrite).unwrap()),
+        0.0
+    );
     // Those that are no trackers, here nearly surely all, are neither paid for it nor fail by it.
     all.skill = "others".into();
     set(&mut all, 1e-9);
-    assert_eq!(best_tracking(&mut workspace.prepare(all.clone(), 1, Existing::Overwrite).unwrap()), 0.0);
+    assert_eq!(
+        best_tracking(&mut workspace.prepare(all.clone(), Some(1), Existing::Overwrite).unwrap()),
+        0.0
+    );
     all.skill = "again".into();
     set(&mut all, 1.0);
-    let best = best_tracking(&mut workspace.prepare(all.clone(), 1, Existing::Overwrite).unwrap());
+    let best = best_tracking(&mut workspace.prepare(all.clone(), Some(1), Existing::Overwrite).unwrap());
     assert!((0.3..1.0).contains(&best), "{best}");
 
     // Where nothing is near enough, a character that lost the clip in the first tick is not found again in the next.
@@ -70,7 +76,7 @@ fn trackers_track_the_clips_of_the_nodes_they_rest_at() {
         std::fs::write(path, toml::to_string(&recipe).unwrap()).unwrap();
     }
     all.skill = "strict".into();
-    let mut run = strict.prepare(all, 1, Existing::Overwrite).unwrap();
+    let mut run = strict.prepare(all, Some(1), Existing::Overwrite).unwrap();
     run.advance().unwrap();
     let mut mean = || {
         let reports = (0..6).map(|_| run.advance().unwrap().episodes);

@@ -4,13 +4,13 @@ use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use std::time::Duration;
 
-use anyhow::Result;
+use anyhow::{Result, ensure};
 use clap::Args;
 use indicatif::{ProgressBar, ProgressStyle};
 use trainer::env::{DT_SECS, NodeReport, REPORTED_NODES, TrainingGraph};
 use trainer::lineage::Lineage;
 use trainer::recipe::Recipe;
-use trainer::run::{Existing, Run, RunError, holds_a_run};
+use trainer::run::{Existing, Run, RunError, RunFolder, holds_a_run};
 use trainer::workspace::Workspace;
 
 use super::interrupt::{Interrupt, Signal};
@@ -41,9 +41,9 @@ pub(crate) struct Arguments {
     /// Samples that count as taken by a run that starts from another, so that it begins in a later phase of its recipe.
     #[arg(long, value_name = "SAMPLES", requires = "from", default_value_t = 0)]
     from_samples: u64,
-    /// Seed of the random numbers; a lineage has its own.
-    #[arg(long, default_value_t = 1, conflicts_with = "plan")]
-    seed: u64,
+    /// Seed of the random numbers, 1 by default; a run that continues keeps its own, and a lineage has its own.
+    #[arg(long, conflicts_with = "plan")]
+    seed: Option<u64>,
     /// Threads, 1 to 1024; the processor's number by default.
     #[arg(long, value_parser = clap::value_parser!(u16).range(1..=1024))]
     threads: Option<u16>,
@@ -68,7 +68,7 @@ pub(crate) fn run(workspace: &Workspace, arguments: &Arguments) -> Result<ExitCo
         run.notes.iter().for_each(complain);
         train(run, arguments.iterations, &interrupt)?;
         stopped = interrupt.caught().map(|signal| {
-            complain(&how_to_continue(run, signal, arguments));
+            complain(&how_to_continue(run, signal, std::env::args()));
             signal.exit_code()
         });
         Ok(stopped.is_none())
@@ -82,11 +82,16 @@ pub(crate) fn run(workspace: &Workspace, arguments: &Arguments) -> Result<ExitCo
         Some(skill) => vec![workspace.recipe(skill)?],
         None => workspace.recipes_in_order()?,
     };
+    ensure!(!recipes.is_empty(), "expected recipes in {}, found none", workspace.recipes.display());
     // Refused before hours are spent on the runs before it.
     for folder in recipes.iter().map(|recipe| workspace.runs.join(&recipe.skill)) {
         if existing == Existing::Refuse && holds_a_run(&folder) {
             return Err(RunError::Exists { folder }.into());
         }
+    }
+    if existing == Existing::Overwrite && arguments.skill.is_none() {
+        // All at once: one that is interrupted and resumed must not take what an earlier training left for its own.
+        RunFolder::clear_all(recipes.iter().map(|recipe| workspace.runs.join(&recipe.skill)))?;
     }
     for recipe in recipes {
         let mut run = match &arguments.from {
@@ -103,18 +108,31 @@ pub(crate) fn run(workspace: &Workspace, arguments: &Arguments) -> Result<ExitCo
 }
 
 /// What a user who stopped a run should know.
-fn how_to_continue(run: &Run, signal: Signal, arguments: &Arguments) -> String {
-    let again = match (&arguments.skill, &arguments.plan) {
-        (Some(skill), _) => skill.clone(),
-        (None, Some(plan)) => format!("--plan {}", plan.display()),
-        (None, None) => "--all".to_owned(),
-    };
+fn how_to_continue(run: &Run, signal: Signal, arguments: impl Iterator<Item = String>) -> String {
     format!(
-        "stopped by {} after {} samples, saved in {}; continue with `trainer train {again} --resume`",
+        "stopped by {} after {} samples, saved in {}; continue with `{}`",
         signal.name(),
         run.training.samples,
-        run.folder.path().display()
+        run.folder.path().display(),
+        command_to_continue(arguments)
     )
+}
+
+/// The command of these arguments, the program's name first, that continues what it began.
+fn command_to_continue(arguments: impl Iterator<Item = String>) -> String {
+    let again = |argument: &String| argument != "--overwrite" && argument != "--resume";
+    let is_plain = |c: char| c.is_ascii_alphanumeric() || "-_./=,:+@%".contains(c);
+    let shown = |argument: String| match !argument.is_empty() && argument.chars().all(is_plain) {
+        true => argument,
+        false => format!("'{}'", argument.replace('\'', "'\\''")),
+    };
+    let words = arguments.skip(1).filter(again).map(shown);
+    ["trainer".to_owned()]
+        .into_iter()
+        .chain(words)
+        .chain(["--resume".to_owned()])
+        .collect::<Vec<_>>()
+        .join(" ")
 }
 
 fn add(sums: &mut [NodeReport; REPORTED_NODES], more: &[NodeReport; REPORTED_NODES]) {
@@ -177,4 +195,20 @@ fn train(run: &mut Run, iterations: Option<u64>, interrupt: &Interrupt) -> Resul
     }
     bar.finish();
     Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_stopped_training_continues_by_its_own_arguments() {
+        let words = |line: &'static str| line.split('|').map(str::to_owned);
+        let again = |line| command_to_continue(words(line));
+        assert_eq!(
+            again("/bin/trainer|--runs|my runs|train|walk|--seed|7|--overwrite|--model|it's.xml"),
+            r"trainer --runs 'my runs' train walk --seed 7 --model 'it'\''s.xml' --resume"
+        );
+        assert_eq!(again("trainer|train|--all|--resume"), "trainer train --all --resume");
+    }
 }

@@ -77,7 +77,7 @@ impl Lineage {
         let workspace = &Workspace { parents: step.parents.clone(), ..workspace.clone() };
         let seed = step.seed.unwrap_or(self.seed);
         let existing = if existing == Existing::Resume && !there { Existing::Refuse } else { existing };
-        let mut run = workspace.prepare_named(name, recipe, seed, existing, start)?;
+        let mut run = workspace.prepare_named(name, recipe, Some(seed), existing, start)?;
         run.folder.write(STEP_FILE, &stamp)?;
         if !train(&mut run)? {
             return Ok(false);

@@ -7,6 +7,7 @@ use files::{remove_unfinished, write_atomically};
 use super::RunError;
 use super::lock::{Holder, RunLock};
 use crate::checkpoint::{Checkpoint, CheckpointError};
+use crate::lineage::STEP_FILE;
 
 /// The newest checkpoint.
 pub const CHECKPOINT: &str = "checkpoint.safetensors";
@@ -88,12 +89,37 @@ impl RunFolder {
         Ok(Self { path, lock })
     }
 
-    /// Deletes the checkpoints and metrics that are there.
+    /// Deletes the checkpoints and metrics that are there, and what says which step of a lineage made them.
     ///
     /// # Errors
     /// When a file can't be removed.
     pub fn clear(&self) -> Result<(), RunError> {
-        [CHECKPOINT, PREVIOUS, TORN, METRICS_FILE].iter().try_for_each(|name| remove(&self.path.join(name)))
+        let files = [CHECKPOINT, PREVIOUS, TORN, METRICS_FILE, STEP_FILE];
+        files.iter().try_for_each(|name| remove(&self.path.join(name)))
+    }
+
+    /// Clears those of these folders that are there. No folder is cleared unless all of them can be locked.
+    ///
+    /// # Errors
+    /// When another trainer holds one, or a file can't be removed.
+    pub fn clear_all(paths: impl IntoIterator<Item = PathBuf>) -> Result<(), RunError> {
+        let there = paths.into_iter().filter(|path| path.is_dir());
+        let open = there.map(|path| Self::open(path, Existing::Overwrite)).collect::<Result<Vec<_>, _>>()?;
+        open.iter().try_for_each(Self::clear)
+    }
+
+    /// Drops the rows of the metrics that come after so many samples: those that a killed run wrote after its last checkpoint.
+    ///
+    /// # Errors
+    /// When the metrics can't be read or written.
+    pub fn cut_metrics(&self, samples: u64) -> Result<(), RunError> {
+        let path = self.path.join(METRICS_FILE);
+        let text = std::fs::read_to_string(&path).map_err(|source| RunError::Io { path, source })?;
+        let of_row = |row: &str| row.split(',').next().and_then(|count| count.parse::<u64>().ok());
+        let keeps = |(index, row): &(usize, &str)| *index == 0 || of_row(row).is_some_and(|s| s <= samples);
+        let kept: String =
+            text.lines().enumerate().filter(keeps).map(|(_, row)| format!("{row}\n")).collect();
+        if kept == text { Ok(()) } else { self.write(METRICS_FILE, &kept) }
     }
 
     /// Where it is.
