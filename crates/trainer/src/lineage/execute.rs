@@ -14,7 +14,8 @@ use crate::workspace::{Start, Workspace};
 
 impl Lineage {
     /// Does the steps in order. `train` is called with each run that has samples left to take, and returns false to stop there.
-    /// With [`Existing::Resume`] finished steps are skipped and an unfinished one continues.
+    /// With [`Existing::Resume`] finished steps are skipped and an unfinished one continues. With [`Existing::Overwrite`] the runs of
+    /// all steps are deleted first.
     ///
     /// # Errors
     /// When a run is there with [`Existing::Refuse`], a run was made by another step, or a step fails.
@@ -29,6 +30,11 @@ impl Lineage {
                 return Err(RunError::Exists { folder }.into());
             }
         }
+        if existing == Existing::Overwrite {
+            self.check_ready(workspace)?;
+            // All at once: one that is interrupted and resumed must not take what an earlier execution left for its own.
+            RunFolder::clear_all(self.steps.iter().map(|step| workspace.runs.join(step.run())))?;
+        }
         for (index, step) in self.steps.iter().enumerate() {
             let at = || format!("steps[{index}], {}", step.run());
             let going = match step {
@@ -42,6 +48,16 @@ impl Lineage {
             }
         }
         Ok(())
+    }
+
+    /// Refuses a lineage that lacks a recipe or a kept checkpoint.
+    fn check_ready(&self, workspace: &Workspace) -> Result<()> {
+        for step in &self.steps {
+            if let Step::Train(step) = step {
+                workspace.recipe(&step.recipe)?;
+            }
+        }
+        self.kept.iter().try_for_each(|name| workspace.required(name).map(|_| ()))
     }
 
     fn train(
