@@ -107,7 +107,8 @@ fn a_signal_saves_the_run_and_nothing_else_touches_it() {
         kill(signal, &child);
         let output = child.wait_with_output().unwrap();
         assert_eq!(output.status.code(), Some(code), "{}", said(&output));
-        assert!(said(&output).contains("trainer train walk --resume"), "{}", said(&output));
+        assert!(said(&output).contains(" train walk --resume`"), "{}", said(&output));
+        assert!(said(&output).contains(" --kept "), "the whole command: {}", said(&output));
         assert!(trainer::checkpoint::Checkpoint::load(&checkpoint).unwrap().progress.samples > 0);
     }
     let refused = place.run(&["train", "walk"]);
@@ -162,6 +163,57 @@ fn a_lineage_is_run_resumed_and_averaged() {
     let changed = train(&["--resume"]);
     assert_eq!(changed.status.code(), Some(1));
     assert!(said(&changed).contains("lineage.toml"), "{}", said(&changed));
+}
+
+#[test]
+fn a_lineage_that_is_overwritten_and_interrupted_keeps_nothing_of_an_earlier_one() {
+    let place = ScratchFolder::new();
+    let plan = "steps = [{ train = { recipe = \"walk\", run = \"first\", samples = 32 } }, \
+                { train = { recipe = \"walk\", run = \"second\", from = \"first\", samples = 32 } }]";
+    std::fs::write(place.path("plan.toml"), plan).unwrap();
+    let path = place.path("plan.toml");
+    let train = |more: &[&str]| {
+        let arguments = [&["train", "--plan", path.to_str().unwrap()], more].concat();
+        let output = place.run(&arguments);
+        assert_eq!(output.status.code(), Some(0), "{}", said(&output));
+    };
+    train(&[]);
+    let second = place.path("runs/second/checkpoint.safetensors");
+    assert!(second.exists());
+    train(&["--overwrite", "--iterations", "1"]);
+    assert!(!second.exists(), "it started from the networks of the run that was overwritten");
+    train(&["--resume"]);
+    assert!(second.exists());
+}
+
+#[test]
+fn a_lineage_averages_kept_checkpoints() {
+    let place = ScratchFolder::new();
+    let trained = place.run(&["train", "walk", "--iterations", "1"]);
+    assert_eq!(trained.status.code(), Some(0), "{}", said(&trained));
+    std::fs::create_dir(place.path("kept")).unwrap();
+    let from = place.path("runs/walk/checkpoint.safetensors");
+    for name in ["old", "older"] {
+        std::fs::copy(&from, place.path("kept").join(format!("{name}.safetensors"))).unwrap();
+    }
+    let plan = "kept = [\"old\", \"older\"]\n\
+                steps = [{ average = { run = \"mean\", of = [\"old\", \"older\"] } }]";
+    std::fs::write(place.path("plan.toml"), plan).unwrap();
+    let averaged = place.run(&["train", "--plan", place.path("plan.toml").to_str().unwrap()]);
+    assert_eq!(averaged.status.code(), Some(0), "{}", said(&averaged));
+    assert!(place.path("runs/mean/checkpoint.safetensors").exists());
+}
+
+#[test]
+fn a_folder_without_recipes_is_named() {
+    let place = ScratchFolder::new();
+    std::fs::remove_file(place.path("recipes/walk.toml")).unwrap();
+    for arguments in [&["train", "--all"][..], &["normaliser"]] {
+        let output = place.run(arguments);
+        assert_eq!(output.status.code(), Some(1), "{arguments:?}");
+        let said = said(&output);
+        assert!(said.contains("expected recipes") && said.contains("recipes, found none"), "{said}");
+    }
 }
 
 #[test]

@@ -109,13 +109,7 @@ fn average_runs(step: &AverageStep, workspace: &Workspace, existing: Existing) -
     if existing == Existing::Resume && newest_checkpoint(&path)?.is_some() {
         return check_stamp(&path, &stamp);
     }
-    let mut checkpoints = Vec::new();
-    for name in &step.of {
-        let folder = workspace.runs.join(name);
-        let loaded = newest_checkpoint(&folder)?;
-        let loaded = loaded.with_context(|| format!("expected a run in {}, found none", folder.display()))?;
-        checkpoints.push((loaded.checkpoint, loaded.path));
-    }
+    let checkpoints = step.of.iter().map(|name| workspace.required(name)).collect::<Result<Vec<_>>>()?;
     let mean = average(&checkpoints, &step.except)?;
     let folder =
         RunFolder::open(path, if existing == Existing::Resume { Existing::Refuse } else { existing })?;
