@@ -3,7 +3,7 @@
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 
-use anyhow::{Context, Result};
+use anyhow::{Context, Result, ensure};
 use clap::Args;
 use clips::ClipFolder;
 use physics_bridge::Model;
@@ -43,6 +43,7 @@ pub(crate) fn run(
             }
         }
     }
+    ensure!(!names.is_empty(), "expected recipes with clips in {}, found none", recipes.display());
     let clips = names.iter().map(|n| folder.load(n)).collect::<Result<Vec<_>, _>>()?;
     let ours = Normalisers::from_clips(&clips, model)?;
     say(format_args!("{} clips: {}", clips.len(), names.into_iter().collect::<Vec<_>>().join(", ")))?;
