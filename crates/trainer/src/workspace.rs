@@ -151,7 +151,8 @@ impl Workspace {
     /// As [`Workspace::prepare_named`].
     pub fn prepare(&self, recipe: Recipe, seed: Option<u64>, existing: Existing) -> Result<Run> {
         let name = recipe.skill.clone();
-        let kept = if existing == Existing::Resume { self.newest(&name)? } else { None };
+        let continues = existing == Existing::Resume && !RunFolder::begins_anew(&self.runs.join(&name));
+        let kept = if continues { self.newest(&name)? } else { None };
         let start = kept.map_or(Start::Parents, Start::Continue);
         self.prepare_named(&name, recipe, seed, existing, start)
     }
@@ -208,6 +209,7 @@ impl Workspace {
             (_, start, _) => start,
         };
         let begins = matches!((&own, &start), (None, Start::From { .. }));
+        let anew = own.is_none() && !matches!(start, Start::Continue(_));
         let earlier = match (own, start) {
             (Some(Loaded { checkpoint, path, .. }), _) => Some((checkpoint, path)),
             (None, Start::Continue(earlier)) => Some(earlier),
@@ -236,6 +238,9 @@ impl Workspace {
         }
         if earlier.is_none() || !folder.path().join(METRICS_FILE).exists() {
             folder.write(METRICS_FILE, &format!("{METRICS}\n"))?;
+        }
+        if anew {
+            folder.begin_anew()?;
         }
         folder.cut_metrics(training.samples)?;
         folder.write("seed.txt", &format!("{seed}\n"))?;

@@ -90,8 +90,13 @@ pub(crate) fn run(workspace: &Workspace, arguments: &Arguments) -> Result<ExitCo
         }
     }
     if existing == Existing::Overwrite && arguments.skill.is_none() {
-        // All at once: one that is interrupted and resumed must not take what an earlier training left for its own.
-        RunFolder::clear_all(recipes.iter().map(|recipe| workspace.runs.join(&recipe.skill)))?;
+        // All at once: one that is interrupted and resumed must take neither what an earlier training left for its own, nor what is
+        // kept.
+        let folders = || recipes.iter().map(|recipe| workspace.runs.join(&recipe.skill));
+        RunFolder::clear_all(folders())?;
+        for folder in folders() {
+            RunFolder::open(folder, existing)?.begin_anew()?;
+        }
     }
     for recipe in recipes {
         let mut run = match &arguments.from {

@@ -18,6 +18,9 @@ const TORN: &str = "checkpoint.torn.safetensors";
 /// One line an iteration.
 pub const METRICS_FILE: &str = "metrics.csv";
 
+/// Is there where a run begins by itself: before its first checkpoint it must not continue a kept one.
+const ANEW: &str = "anew.txt";
+
 /// What to do about a run that is there already.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Existing {
@@ -94,7 +97,7 @@ impl RunFolder {
     /// # Errors
     /// When a file can't be removed.
     pub fn clear(&self) -> Result<(), RunError> {
-        let files = [CHECKPOINT, PREVIOUS, TORN, METRICS_FILE, STEP_FILE];
+        let files = [CHECKPOINT, PREVIOUS, TORN, METRICS_FILE, STEP_FILE, ANEW];
         files.iter().try_for_each(|name| remove(&self.path.join(name)))
     }
 
@@ -106,6 +109,20 @@ impl RunFolder {
         let there = paths.into_iter().filter(|path| path.is_dir());
         let open = there.map(|path| Self::open(path, Existing::Overwrite)).collect::<Result<Vec<_>, _>>()?;
         open.iter().try_for_each(Self::clear)
+    }
+
+    /// Notes that the run of this folder begins by itself, see [`RunFolder::begins_anew`].
+    ///
+    /// # Errors
+    /// When the folder can't be written.
+    pub fn begin_anew(&self) -> Result<(), RunError> {
+        self.write(ANEW, "This run continues no kept checkpoint.\n")
+    }
+
+    /// True for the folder of a run that continues no kept checkpoint, also where it has none of its own yet.
+    #[must_use]
+    pub fn begins_anew(path: &Path) -> bool {
+        path.join(ANEW).exists()
     }
 
     /// Drops the rows of the metrics that come after so many samples: those that a killed run wrote after its last checkpoint.

@@ -185,6 +185,24 @@ fn a_run_is_deleted_once_the_new_one_is_ready() {
 }
 
 #[test]
+fn a_run_that_begins_by_itself_does_not_continue_a_kept_checkpoint() {
+    let folder = tempfile::tempdir().unwrap();
+    let workspace = workspace(folder.path());
+    let walk = recipe("walk", "", "[[phases]]\nsamples = 160");
+    let mut run = workspace.prepare(walk.clone(), None, Existing::Refuse).unwrap();
+    run.advance().unwrap();
+    run.save().unwrap();
+    drop(run);
+    std::fs::create_dir(&workspace.kept).unwrap();
+    std::fs::rename(workspace.checkpoint("walk"), workspace.kept.join("walk.safetensors")).unwrap();
+    let samples = || workspace.prepare(walk.clone(), None, Existing::Resume).unwrap().training.samples;
+    assert_eq!(samples(), 0, "it began by itself");
+    std::fs::remove_dir_all(workspace.runs.join("walk")).unwrap();
+    assert_eq!(samples(), ROWS);
+    assert_eq!(samples(), ROWS, "it continues the kept one until it has its own");
+}
+
+#[test]
 fn metrics_do_not_go_back_in_time_after_a_kill() {
     let folder = tempfile::tempdir().unwrap();
     let workspace = workspace(folder.path());
