@@ -140,7 +140,8 @@ fn ball(rig: &Rig<'_>, gait: &Gait, [kg, mps]: [f32; 2], seed: u64) -> Fates {
     let aside = Motion::at(Vec3::new(0.0, 200.0, radius));
     let (mut cast, ball) = Cast::new(rig, gait, &[mark(0.0, 0.0, 0.0)], |edit| edit.add_prop(prop, aside))?;
     cast.run(rng.range(BEFORE_SECS[0], BEFORE_SECS[1]))?;
-    if cast.players[0].has_fallen() {
+    // A prop that diverged may have been taken out.
+    if cast.players[0].has_fallen() || cast.world.prop(ball).is_err() {
         return Ok(Vec::new());
     }
     throw(&mut cast, ball, mps, rng.angle())?;

@@ -1,7 +1,7 @@
 //! Characters in one world, each with a pad.
 
 use glam::Vec2;
-use physics_bridge::{CharacterHandle, World, WorldEdit, WorldError};
+use physics_bridge::{CharacterHandle, Diverging, World, WorldEdit, WorldError};
 use policy_core::contract::WALKING_START_MPS;
 use policy_core::{
     Bindings, CharacterState, Command, CommandMapper, Controller, ControllerConfig, GamepadState, Heading,
@@ -31,6 +31,10 @@ pub(super) struct Player {
     mapper: CommandMapper,
     fell_at: Option<u32>,
     up_at: Option<u32>,
+    /// True when it diverged in the last tick.
+    diverges: bool,
+    /// True once the world has put it back, after which it stands without having got up.
+    put_back: bool,
 }
 
 impl Player {
@@ -44,9 +48,9 @@ impl Player {
         self.state.root().position.truncate()
     }
 
-    /// True from a fall until it is on its feet again.
+    /// True from a fall until it is on its feet again, and in a tick in which its physics diverged, which counts as a fall.
     pub fn is_down(&self) -> bool {
-        self.controller.is_down()
+        self.diverges || self.controller.is_down()
     }
 
     /// True since its first fall.
@@ -91,6 +95,8 @@ impl Cast {
                 mapper: CommandMapper::new(rig.pack, &Bindings::default()),
                 fell_at: None,
                 up_at: None,
+                diverges: false,
+                put_back: false,
             };
             player.steer(mark.angle, gait.settled_push());
             player
@@ -121,13 +127,21 @@ impl Cast {
             self.world.actuate(player.handle, player.controller.tick(&player.state, &command, TICK_SECS))?;
         }
         self.world.step();
+        let diverged = |handle| {
+            let mut culprits = self.world.divergences().iter();
+            culprits.any(|divergence| divergence.what == Some(Diverging::Character(handle)))
+        };
+        for player in &mut self.players {
+            player.diverges = diverged(player.handle);
+            player.put_back |= player.diverges;
+        }
         self.sense()?;
         self.tick += 1;
         for player in &mut self.players {
             let up = is_upright(player.controller.pack().skeleton(), &player.state);
             match player.fell_at {
                 None if player.is_down() => player.fell_at = Some(self.tick),
-                Some(_) if player.up_at.is_none() && !player.is_down() && up => {
+                Some(_) if player.up_at.is_none() && !player.put_back && !player.is_down() && up => {
                     player.up_at = Some(self.tick);
                 }
                 _ => {}
@@ -162,5 +176,39 @@ impl Cast {
             arrived,
         });
         Ok(fates.collect())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::path::Path;
+    use std::sync::Arc;
+
+    use physics::{Engine, Model};
+    use policy_core::CharacterPack;
+
+    use super::*;
+    use crate::{Effort, Progress};
+
+    #[test]
+    fn a_divergence_is_a_fall_without_getting_up() {
+        let assets = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../assets");
+        let pack = std::fs::read(assets.join("humanoid.pack.safetensors")).unwrap();
+        let pack = Arc::new(CharacterPack::from_bytes(&pack).unwrap());
+        let described = physics_bridge::Model::load(assets.join("humanoid.xml")).unwrap();
+        let model = Model::new(&described, Engine::Mujoco).unwrap();
+        let rig = Rig::new(&model, &pack, ControllerConfig::default(), Effort::QUICK, Progress::hidden());
+        let idle = Gait::named(&pack, "idle").unwrap();
+        let marks = [0.0, 10.0].map(|x| Mark { at: Vec2::new(x, 0.0), angle: 0.0 });
+        let (mut cast, ()) = Cast::new(&rig, &idle, &marks, |_| Ok(())).unwrap();
+        let [wild, _] = [0, 1].map(|index| cast.players[index].handle);
+        let mut pose = physics_bridge::Character::new(&described).pose();
+        cast.world.pose_into(wild, &mut pose).unwrap();
+        pose.qvel[8] = 1e5;
+        cast.world.set_pose(wild, &pose.qpos, &pose.qvel).unwrap();
+        cast.tick().unwrap();
+        assert!(cast.players[0].is_down() && !cast.players[1].is_down());
+        let fates = cast.fates(|_| None).unwrap();
+        assert!(fates[0].fell && !fates[0].rose && !fates[1].fell, "{fates:?}");
     }
 }

@@ -94,7 +94,9 @@ fn run(rig: &Rig<'_>, walk: &Gait, scene: &Arc<Playground>, seed: u64) -> Result
         let Some(pad) = follower.tick(&way, view, motion, TICK_SECS) else { break };
         player.pad = pad;
         for (prop, placed) in props.iter().zip(&scene.props) {
-            if let Some(force) = placed.swing_force(&cast.world.motion(*prop)?) {
+            // A prop that diverged may have been taken out.
+            let Ok(motion) = cast.world.motion(*prop) else { continue };
+            if let Some(force) = placed.swing_force(&motion) {
                 cast.world.push(*prop, force, TICK_SECS)?;
             }
         }
