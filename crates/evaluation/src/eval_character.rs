@@ -17,6 +17,9 @@ use crate::trial::TICK_SECS;
 /// Seconds of walking before anything is measured.
 pub const SETTLE_SECS: f32 = 2.0;
 
+/// Largest speed at which a character is set down that is to stand, metres per second.
+const STANDING_MPS: f32 = 0.3;
+
 /// Seconds within which any node of a path is reached.
 const REACH_SECS: f32 = 15.0;
 
@@ -57,20 +60,46 @@ impl EvalCharacter {
     /// of the path, as in a game; it may have fallen on the way. Any other stands there from the start.
     #[must_use]
     pub fn at(model: &Model, pack: &Arc<CharacterPack>, node: NodeId) -> Self {
+        let mut eval = Self::before(model, pack, node);
+        eval.reach(node, 0.0);
+        eval
+    }
+
+    /// As [`EvalCharacter::at`], one of many that differ: it starts at another speed and goes another way, which is returned,
+    /// radians from x.
+    pub(super) fn at_by_chance(
+        model: &Model,
+        pack: &Arc<CharacterPack>,
+        node: NodeId,
+        rng: &mut Rng,
+    ) -> (Self, f32) {
+        let mut eval = Self::before(model, pack, node);
+        let way = rng.angle();
+        let most = if pack.graph().node(node).stands() { STANDING_MPS } else { WALKING_START_MPS };
+        eval.set_down(Heading::from_angle(way), rng.range(0.0, most));
+        eval.reach(node, way);
+        (eval, way)
+    }
+
+    /// A character where a game would have it before it acts as `node`.
+    fn before(model: &Model, pack: &Arc<CharacterPack>, node: NodeId) -> Self {
         let graph = pack.graph();
         let path = graph.paths().iter().find(|p| p.nodes().contains(&node));
         let stands = graph.node(node).stands();
         let start = path.filter(|_| !stands).map_or(node, |p| p.nodes()[1]);
-        let mut eval = Self::new(model, pack, &graph.node(start).name);
+        Self::new(model, pack, &graph.node(start).name)
+    }
+
+    /// Goes along `way` until it acts as `node`.
+    fn reach(&mut self, node: NodeId, way: f32) {
         for _ in 0..(REACH_SECS / TICK_SECS) as u32 {
-            let position = eval.controller.report().position;
+            let position = self.controller.report().position;
             if position == GraphPosition::node(node) {
                 break;
             }
-            let command = eval.ahead(node);
-            eval.tick(&command);
+            let command = self.along(node, way);
+            self.tick(&command);
         }
-        eval
     }
 
     /// Stands it up at the origin, walking.
@@ -98,8 +127,13 @@ impl EvalCharacter {
     /// The command to go straight ahead along x as `node`; to stay, for a node that stands.
     #[must_use]
     pub fn ahead(&self, node: NodeId) -> Command {
+        self.along(node, 0.0)
+    }
+
+    /// As [`EvalCharacter::ahead`], along another way, radians from x.
+    pub(super) fn along(&self, node: NodeId, way: f32) -> Command {
         let stands = self.controller.pack().graph().node(node).stands();
-        let target = self.position() + Vec2::new(TARGET_RANGE_METRES, 0.0);
+        let target = self.position() + TARGET_RANGE_METRES * Vec2::from_angle(way);
         Command { target: (!stands).then_some(target), goal: Goal::Node(node), ..Command::default() }
     }
 

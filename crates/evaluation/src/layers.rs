@@ -41,7 +41,8 @@ fn choices() -> impl Iterator<Item = (usize, String)> {
     })
 }
 
-/// Blends each choice of layers half-way from node `from` to node `to`, for `characters` that go straight ahead.
+/// Blends each choice of layers half-way from node `from` to node `to`, for `characters` that go straight ahead, each another way
+/// and from another speed.
 #[must_use]
 pub fn measure_layers(
     model: &Model,
@@ -76,7 +77,8 @@ pub fn watch_layers(
 ) -> Option<Vec<CharacterState>> {
     let mut weights = [0.0; MAX_LAYERS];
     weights[..LAYERS].copy_from_slice(&t);
-    walk(model, pack, from, Some(Blend::between_per_layer(from.into(), to.into(), weights)), 0)
+    let blend = Blend::between_per_layer(from.into(), to.into(), weights);
+    walk(EvalCharacter::at(model, pack, from), 0.0, from, Some(blend), SETTLE_SECS)
 }
 
 /// States of a walk; `None` when it ended in a fall.
@@ -89,7 +91,13 @@ fn walk_all(
     blend: Option<Blend>,
     seeds: Range<usize>,
 ) -> Vec<Walk> {
-    seeds.into_par_iter().map(|seed| walk(model, pack, node, blend, seed as u64)).collect()
+    let walk_of = |seed: usize| {
+        let mut rng = Rng::new(seed as u64, 19);
+        let settle_secs = SETTLE_SECS + rng.range(0.0, 1.0);
+        let (eval, way) = EvalCharacter::at_by_chance(model, pack, node, &mut rng);
+        walk(eval, way, node, blend, settle_secs)
+    };
+    seeds.into_par_iter().map(walk_of).collect()
 }
 
 /// Mean pose error between the walks of two lists that both ended on their feet.
@@ -102,13 +110,12 @@ fn difference(walks: &[Walk], others: &[Walk]) -> f32 {
     errors.iter().sum::<f32>() / errors.len().max(1) as f32
 }
 
-/// States of a character that goes straight ahead; `None` when it falls after it has settled.
-fn walk(model: &Model, pack: &Arc<CharacterPack>, node: NodeId, blend: Option<Blend>, seed: u64) -> Walk {
-    let mut eval = EvalCharacter::at(model, pack, node);
-    let settle = ((SETTLE_SECS + Rng::new(seed, 19).range(0.0, 1.0)) / TICK_SECS) as u32;
+/// States of a character that goes straight along `way`; `None` when it falls.
+fn walk(mut eval: EvalCharacter, way: f32, node: NodeId, blend: Option<Blend>, settle_secs: f32) -> Walk {
+    let settle = (settle_secs / TICK_SECS) as u32;
     let mut states = Vec::new();
     for tick in 0..settle + (TEST_SECS / TICK_SECS) as u32 {
-        let command = Command { blend: blend.filter(|_| tick >= settle), ..eval.ahead(node) };
+        let command = Command { blend: blend.filter(|_| tick >= settle), ..eval.along(node, way) };
         if !eval.tick(&command) || eval.controller.report().fallen {
             return None;
         }

@@ -3,6 +3,7 @@
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
+use glam::Vec2;
 use physics::{Engine, Model};
 use policy_core::format::{
     DISCRIMINATOR_LAYOUT, EdgeEntry, EndEntry, Manifest, OBSERVATION_LAYOUT, PACK_FORMAT, PACK_VERSION,
@@ -10,6 +11,7 @@ use policy_core::format::{
 };
 use policy_core::training::{Layer, Normaliser, PackTensors};
 use policy_core::{CharacterPack, ControllerConfig, Mlp, Skeleton};
+use random::Rng;
 
 use super::{Effort, Evaluation, PlayerReport, Progress, Section, evaluate, table};
 
@@ -213,4 +215,23 @@ fn every_section_of_a_player_is_measured_in_rapier_too() {
     assert!(player.terrain["hills_35cm"]["walk"].minutes > 0.0 && player.push_torso.len() == 5);
     assert_eq!(player.robustness.len(), mujoco.player.robustness.len());
     assert!(player.foot_slide_mps["walk"].is_finite());
+}
+
+#[test]
+fn no_two_characters_start_alike() {
+    let model = physics_bridge::Model::from_mjcf(HUMANOID).unwrap();
+    let model = Model::new(&model, Engine::Mujoco).unwrap();
+    let pack = pack(false);
+    let idle = pack.graph().node_named("idle").unwrap();
+    let starts: Vec<[f32; 2]> = (0..8)
+        .map(|seed| {
+            let (eval, way) = EvalCharacter::at_by_chance(&model, &pack, idle, &mut Rng::new(seed, 9));
+            let velocity = eval.state.root().linear_velocity.truncate();
+            assert!(velocity.length() < 1e-6 || velocity.angle_to(Vec2::from_angle(way)).abs() < 1e-3);
+            [way, velocity.length()]
+        })
+        .collect();
+    for (index, start) in starts.iter().enumerate() {
+        assert!(starts[..index].iter().all(|other| (0..2).all(|i| other[i] != start[i])), "{starts:?}");
+    }
 }
