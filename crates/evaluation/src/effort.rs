@@ -100,7 +100,8 @@ impl Effort {
         races: 1,
     };
 
-    /// The same with so many characters in every measure; drops and seconds stay.
+    /// The same with so many characters in every measure, and as many tries of each encounter; drops, seconds and runs over the course
+    /// stay.
     #[must_use]
     pub fn with_characters(self, count: usize) -> Self {
         Self {
@@ -114,6 +115,7 @@ impl Effort {
             pressed: count,
             pad_players: count,
             roamers: count,
+            encounters: count,
             ..self
         }
     }

@@ -64,7 +64,7 @@ pub struct PlayerReport {
     /// By gait: share of ticks in which the legs are more than 1 cm inside each other, 0 to 1.
     #[serde(skip_serializing_if = "BTreeMap::is_empty")]
     pub self_overlap: By<f32>,
-    /// By gait: greatest depth of the legs in each other, metres; negative when they never touch.
+    /// By gait: greatest depth of the legs in each other, metres; 0 when they never touch.
     #[serde(skip_serializing_if = "BTreeMap::is_empty")]
     pub self_overlap_depth_m: By<f32>,
     /// By kind of pad.
