@@ -120,6 +120,22 @@ pub fn evaluate(
     clips: &BTreeMap<String, Vec<CharacterState>>,
     progress: &Progress,
 ) -> Result<Evaluation, EvaluationError> {
+    evaluate_each(model, pack, config, (effort, sections), clips, progress, |_| {})
+}
+
+/// As [`evaluate`]; `after_section` gets what was measured so far after each section, so that a later one that fails loses nothing.
+///
+/// # Errors
+/// As [`evaluate`].
+pub fn evaluate_each(
+    model: &Model,
+    pack: &Arc<CharacterPack>,
+    config: ControllerConfig,
+    (effort, sections): (&Effort, &[Section]),
+    clips: &BTreeMap<String, Vec<CharacterState>>,
+    progress: &Progress,
+    mut after_section: impl FnMut(&Evaluation),
+) -> Result<Evaluation, EvaluationError> {
     let mut evaluation = Evaluation { engine: model.engine().name(), ..Evaluation::default() };
     let graph = pack.graph();
     for edge in graph.edges() {
@@ -143,6 +159,7 @@ pub fn evaluate(
             Section::Skills => evaluation.measure_skills(model, pack, config, effort),
             other => evaluation.player.measure(*other, &rig)?,
         }
+        after_section(&evaluation);
     }
     Ok(evaluation)
 }

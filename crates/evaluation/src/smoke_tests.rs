@@ -13,7 +13,7 @@ use policy_core::training::{Layer, Normaliser, PackTensors};
 use policy_core::{CharacterPack, ControllerConfig, Mlp, Skeleton};
 use random::Rng;
 
-use super::{Effort, Evaluation, PlayerReport, Progress, Section, evaluate, table};
+use super::{Effort, EvalCharacter, Evaluation, PlayerReport, Progress, Section, evaluate_each, table};
 
 const HUMANOID: &str = include_str!("../../../assets/humanoid.xml");
 
@@ -135,15 +135,20 @@ fn pack(falls: bool) -> Arc<CharacterPack> {
 fn measured(engine: Engine, falls: bool, effort: &Effort, sections: &[Section]) -> Evaluation {
     let model = physics_bridge::Model::from_mjcf(HUMANOID).unwrap();
     let model = Model::new(&model, engine).unwrap();
-    evaluate(
+    let mut so_far = Vec::new();
+    let evaluation = evaluate_each(
         &model,
         &pack(falls),
         ControllerConfig::default(),
         (effort, sections),
         &BTreeMap::new(),
         &Progress::hidden(),
+        |evaluation| so_far.push(evaluation.clone()),
     )
-    .unwrap()
+    .unwrap();
+    assert_eq!(so_far.len(), sections.len(), "each section is told of");
+    assert_eq!(so_far.last(), Some(&evaluation));
+    evaluation
 }
 
 #[test]

@@ -3,8 +3,8 @@
 mod panel;
 
 use std::collections::BTreeMap;
-use std::path::Path;
 
+use plotters::coord::Shift;
 use plotters::prelude::*;
 
 use self::panel::{Bars, Lines};
@@ -15,15 +15,23 @@ use super::stress::{FallReport, SidesReport};
 /// Why a picture can't be drawn.
 pub type PlotError = DrawingAreaErrorKind<std::io::Error>;
 
+/// What a page is drawn on.
+type Page<'a> = DrawingArea<SVGBackend<'a>, Shift>;
+
 /// Size of the page, pixels.
 const PAGE: (u32, u32) = (1260, 1800);
 
-/// Draws a page of twelve plots to `svg`; those that were not measured stay empty.
+/// A page of twelve plots as SVG; those that were not measured stay empty.
 ///
 /// # Errors
-/// When the picture can't be written.
-pub fn draw(report: &PlayerReport, svg: &Path) -> Result<(), PlotError> {
-    let root = SVGBackend::new(svg, PAGE).into_drawing_area();
+/// When a plot can't be drawn.
+pub fn draw(report: &PlayerReport) -> Result<String, PlotError> {
+    let mut svg = String::new();
+    draw_page(report, &SVGBackend::with_string(&mut svg, PAGE).into_drawing_area())?;
+    Ok(svg)
+}
+
+fn draw_page(report: &PlayerReport, root: &Page<'_>) -> Result<(), PlotError> {
     root.fill(&WHITE)?;
     let areas = root.split_evenly((4, 3));
     let cases =
@@ -131,14 +139,10 @@ mod tests {
 
     #[test]
     fn a_page_is_drawn_of_whatever_was_measured() {
-        let folder = tempfile::tempdir().unwrap();
-        let file = folder.path().join("page.svg");
-        draw(&PlayerReport::default(), &file).unwrap();
-        let empty = std::fs::read_to_string(&file).unwrap();
+        let empty = draw(&PlayerReport::default()).unwrap();
         let mut report = PlayerReport::default();
         report.foot_slide_mps.insert("moonwalk".into(), 0.7);
-        draw(&report, &file).unwrap();
-        let page = std::fs::read_to_string(&file).unwrap();
+        let page = draw(&report).unwrap();
         assert!(empty.contains("foot slide") && !empty.contains("moonwalk"));
         assert!(page.contains("moonwalk") && page.trim_end().ends_with("</svg>"));
     }

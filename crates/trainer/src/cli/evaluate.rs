@@ -8,7 +8,9 @@ use std::sync::Arc;
 use anyhow::{Context, Result};
 use clap::Args;
 use clips::ClipFolder;
-use evaluation::{Effort, PlayerReport, Progress, Section, clip_states, evaluate, plots, table};
+use evaluation::{
+    Effort, Evaluation, PlayerReport, Progress, Section, clip_states, evaluate_each, plots, table,
+};
 use files::write_atomically;
 use physics::Engine;
 use physics_bridge::Model;
@@ -100,12 +102,15 @@ pub(crate) fn run(
         let player = serde_json::from_slice(&text).with_context(|| path.display().to_string())?;
         return show(&player, arguments.plots.as_deref());
     }
+    for file in [&arguments.json, &arguments.plots].into_iter().flatten() {
+        make_ready(file).with_context(|| format!("cannot write {}", file.display()))?;
+    }
     let path = arguments.pack.as_ref().context("expected a pack")?;
     let pack = super::load::pack(path)?;
     let effort = if arguments.quick { Effort::QUICK } else { Effort::FULL };
     let effort = arguments.characters.map_or(effort, |count| effort.with_characters(count.into()));
     let sections: &[Section] = if arguments.only.is_empty() { &Section::ALL } else { &arguments.only };
-    let states = match clips {
+    let states = match clips.filter(|_| sections.contains(&Section::Motion)) {
         Some(clips) => states_of_clips(model, recipes, clips, &pack)?,
         None => BTreeMap::new(),
     };
@@ -127,7 +132,15 @@ pub(crate) fn run(
     };
     let progress = Progress::bar();
     let model = physics::Model::new(model, arguments.physics)?;
-    let evaluation = evaluate(&model, &Arc::new(pack), config, (&effort, sections), &states, &progress)?;
+    // The file has what was measured so far, also where a later section fails.
+    let mut written = Ok(());
+    let write = |evaluation: &Evaluation| {
+        if let Some(path) = &arguments.json {
+            written = write_json(evaluation, path);
+        }
+    };
+    let (pack, what) = (Arc::new(pack), (&effort, sections));
+    let evaluation = evaluate_each(&model, &pack, config, what, &states, &progress, write)?;
     progress.finish();
     show(&evaluation.player, arguments.plots.as_deref())?;
     let text = serde_json::to_string_pretty(&evaluation)?;
@@ -138,13 +151,31 @@ pub(crate) fn run(
         }
         None => say(text)?,
     }
-    Ok(())
+    show(&evaluation.player, arguments.plots.as_deref())
+}
+
+/// Makes the folder of a file that is to be written after hours, and tries whether it can be.
+fn make_ready(file: &Path) -> std::io::Result<()> {
+    let folder = file.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
+    std::fs::create_dir_all(folder)?;
+    if file.is_dir() {
+        return Err(std::io::ErrorKind::IsADirectory.into());
+    }
+    let trial = folder.join(format!(".trainer-evaluate-{}", std::process::id()));
+    std::fs::write(&trial, b"")?;
+    std::fs::remove_file(&trial)
+}
+
+fn write_json(evaluation: &Evaluation, path: &Path) -> Result<()> {
+    let text = serde_json::to_string_pretty(evaluation)?;
+    write_atomically(path, text.as_bytes()).with_context(|| format!("cannot write {}", path.display()))
 }
 
 /// Prints the tables and draws the plots.
 fn show(player: &PlayerReport, svg: Option<&Path>) -> Result<()> {
     if let Some(svg) = svg {
-        plots::draw(player, svg).with_context(|| format!("cannot draw {}", svg.display()))?;
+        let drawn = plots::draw(player).with_context(|| format!("cannot draw {}", svg.display()))?;
+        write_atomically(svg, drawn.as_bytes()).with_context(|| format!("cannot write {}", svg.display()))?;
     }
     std::io::stderr().lock().write_all(table(player).as_bytes()).context("cannot write to the standard error")
 }
@@ -166,5 +197,24 @@ fn states_of_clips(
             states.insert(node.name.clone(), clip_states(model, &clip.load(clips)?)?);
         }
     }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn files_are_tried_before_anything_is_measured() {
+        let folder = tempfile::tempdir().unwrap();
+        let file = folder.path().join("deep/er/evaluation.json");
+        make_ready(&file).unwrap();
+        assert_eq!(std::fs::read_dir(file.parent().unwrap()).unwrap().count(), 0, "the trial is removed");
+        make_ready(&file).unwrap();
+        assert!(make_ready(folder.path()).is_err(), "a folder is no file");
+        std::fs::write(&file, b"an earlier one").unwrap();
+        assert!(make_ready(&file.join("x.json")).is_err(), "a file is no folder");
+        make_ready(&file).unwrap();
+        assert_eq!(std::fs::read(&file).unwrap(), b"an earlier one");
+    }
+}
     Ok(states)
 }
