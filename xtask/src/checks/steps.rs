@@ -3,7 +3,7 @@
 use std::path::Path;
 use std::process::Command;
 
-use anyhow::{Result, bail};
+use anyhow::{Result, bail, ensure};
 
 use super::{Step, Verdict, bevy, c_interface, deny, imports, words};
 use crate::setup;
@@ -43,7 +43,7 @@ pub const ALL: &[Step] = &[
     Step { name: "Rapier: enhanced-determinism", run: determinism },
     Step { name: "engines/bevy: no window", run: bevy::check },
     Step { name: "documentation", run: documentation },
-    Step { name: "tests", run: tests },
+    Step { name: "tests", run: tests_all },
 ];
 
 /// Tests Rapier's characters with the same bits on every processor.
@@ -66,11 +66,9 @@ fn clippy(workspace: &Workspace) -> Result<Verdict> {
 
 /// The demo's feature `sound`, which no other check turns on: it needs the development files of ALSA.
 fn sound(workspace: &Workspace) -> Result<Verdict> {
-    if !setup::has_sound() {
-        return Ok(Verdict::Skipped(
-            "ALSA is not installed: apt-get install libasound2-dev pkg-config".into(),
-        ));
-    }
+    let missing =
+        "expected the development files of ALSA, found none: apt-get install libasound2-dev pkg-config";
+    ensure!(setup::has_sound(), missing);
     let of_demo = ["-p", "viewer", "--features", "sound", "--lib"];
     run(workspace.cargo().arg("clippy").args(of_demo).args(["--", "-D", "warnings"]))?;
     run(workspace.cargo().arg("test").args(of_demo).arg("sound::"))?;
@@ -93,19 +91,30 @@ fn documentation(workspace: &Workspace) -> Result<Verdict> {
     Ok(Verdict::Passed)
 }
 
-/// All tests. Those in a real window must not be skipped where one can be opened.
-fn tests(workspace: &Workspace) -> Result<Verdict> {
+/// All tests. Those in a real window must not be skipped: without what they need all others run, and the check fails.
+fn tests_all(workspace: &Workspace) -> Result<Verdict> {
     let mut tests = workspace.cargo();
     tests.args(["test", "--workspace", "--no-fail-fast"]);
-    if setup::has_window() {
+    let has_window = setup::has_window();
+    if has_window {
         tests.env("POLICY_SPACE_NEED_WINDOW", "1");
-    } else {
-        eprintln!(
-            "xtask: Xvfb, xdotool or a Vulkan driver is missing: the tests in a real window are skipped"
-        );
     }
     run(&mut tests)?;
-    Ok(Verdict::Passed)
+    without_window(has_window, cfg!(target_os = "linux"))
+}
+
+/// How the tests ended that passed, with those in a real window or without them.
+fn without_window(has_window: bool, is_linux: bool) -> Result<Verdict> {
+    match (has_window, is_linux) {
+        (true, _) => Ok(Verdict::Passed),
+        (false, true) => bail!(
+            "expected Xvfb, xdotool and a Vulkan driver for the tests in a real window, found not all of them: \
+             apt-get install xvfb xdotool libvulkan1 mesa-vulkan-drivers"
+        ),
+        (false, false) => {
+            Ok(Verdict::Skipped("all passed but those in a real window, which are written for Linux".into()))
+        }
+    }
 }
 
 /// Builds policy-core without the standard library for a target that has none.
@@ -149,4 +158,16 @@ fn require_component(workspace: &Workspace, subcommand: &str, component: &str) -
 fn run_rustup(arguments: &[&str]) -> bool {
     eprintln!("xtask: rustup {}", arguments.join(" "));
     run(Command::new("rustup").args(arguments)).is_ok()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn tests_that_did_not_run_are_no_tests_that_passed() {
+        assert_eq!(without_window(true, true).unwrap(), Verdict::Passed);
+        assert!(without_window(false, true).unwrap_err().to_string().contains("apt-get install xvfb"));
+        assert!(matches!(without_window(false, false).unwrap(), Verdict::Skipped(_)));
+    }
 }

@@ -37,11 +37,10 @@ const BASE: [Package; 12] = [
     package("libxi6", "the window"),
     package("libxkbcommon-x11-0", "the window"),
     package("pkg-config", "finding ALSA; the check of the C interface"),
-    package("libasound2-dev", "the demo's sounds; it is silent without"),
+    package("libasound2-dev", "the demo's sounds, silent without; their check"),
 ];
 
-/// What the tests use beyond that. Without the first two they skip something, with a message; without the other the check of
-/// the C interface fails.
+/// What the tests use beyond that. A check that lacks one of them fails.
 const TESTS: [Package; 3] = [
     package("xvfb", "the tests in a real window"),
     package("xdotool", "the tests in a real window"),
@@ -65,8 +64,8 @@ pub enum Purpose {
 
 /// Says what is missing, and installs it when `install` is set, this is Debian or Ubuntu, and the user is root.
 ///
-/// Missing packages are no error, nor is an installation that fails: what cannot be done without them fails, or
-/// is skipped, with its own message.
+/// Missing packages are no error, nor is an installation that fails: what cannot be done without them fails with its own
+/// message.
 pub fn prepare(purpose: Purpose, install: bool) {
     if !cfg!(target_os = "linux") {
         return;
