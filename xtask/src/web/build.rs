@@ -77,7 +77,7 @@ fn binder(workspace: &Workspace) -> Result<PathBuf> {
     }
     eprintln!("xtask: installing {BINDER} {version} in third_party/tools; this takes some minutes, once");
     let mut install = workspace.cargo();
-    install.args(["install", "wasm-bindgen-cli", "--version", version, "--root"]).arg(&tools);
+    install.args(["install", "--locked", "wasm-bindgen-cli", "--version", version, "--root"]).arg(&tools);
     install.arg("--target-dir").arg(workspace.target().join("tools"));
     run_command(&mut install)?;
     ensure!(
