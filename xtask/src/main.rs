@@ -1,4 +1,4 @@
-//! `cargo xtask`: set-up, demo, checks and benchmarks of Policy Space, one verb each.
+//! `cargo xtask`: set-up, demo, checks and benchmarks of Policy Space, one command each.
 //!
 //! Depends on nothing that links libmujoco, because it has to run before libmujoco is there.
 
@@ -26,7 +26,7 @@ use crate::workspace::{Workspace, exit_code_of};
 
 /// Set-up, demo, checks and benchmarks of Policy Space.
 ///
-/// Most users need two verbs: `cargo xtask demo` and `cargo xtask test`. Each makes the machine ready first.
+/// Most users need two commands: `cargo xtask demo` and `cargo xtask test`. Each makes the machine ready first.
 #[derive(Debug, Parser)]
 #[command(name = "cargo xtask", bin_name = "cargo xtask", arg_required_else_help = true)]
 struct Cli {
@@ -76,7 +76,7 @@ enum Verb {
     Fuzz(fuzz::FuzzArgs),
     /// Give broken files to every reader, and report panics, aborts, hangs and too much memory.
     ///
-    /// Each file is a sound file of the project with a fault put in. The time and memory of each reader are bounded.
+    /// Each file is a valid file of the project with one fault injected. The time and memory of each reader are bounded.
     /// One file of each finding is kept in out/hostile.
     Hostile(hostile::HostileArgs),
     /// Write a patched copy of Rapier's source, with which a physics step takes half the time.

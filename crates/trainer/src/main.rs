@@ -1,4 +1,4 @@
-//! `trainer`: trains skills, measures them and binds them into a character pack.
+//! `trainer`: trains skills, evaluates them and builds character packs.
 
 use std::path::PathBuf;
 use std::process::ExitCode;
@@ -13,7 +13,7 @@ use trainer::workspace::{Workspace, newest_or_kept};
 
 mod cli;
 
-/// Trains skills, measures them and binds them into a character pack.
+/// Trains skills, evaluates them and builds character packs.
 #[derive(Parser)]
 #[command(version)]
 struct Arguments {
@@ -29,7 +29,7 @@ struct Arguments {
     /// Folder of kept checkpoints, which runs start from when they have none of their own.
     #[arg(long, global = true, default_value = "assets/checkpoints")]
     kept: PathBuf,
-    /// The character.
+    /// MJCF file of the character's body.
     #[arg(long, global = true, default_value = "assets/humanoid.xml")]
     model: PathBuf,
     #[command(subcommand)]
@@ -42,13 +42,13 @@ enum Verb {
     Train(cli::train::Arguments),
     /// Computes the normalisers of the whole graph from the clips of all recipes.
     Normaliser(cli::normaliser::Arguments),
-    /// Binds trained skills into a character pack.
+    /// Builds a character pack from trained skills.
     Pack(cli::pack::Arguments),
     /// Keeps slim checkpoints of runs, and the normaliser, to start other runs from.
     Keep(cli::keep::Arguments),
     /// Averages the policies of several checkpoints of one run.
     Average(cli::average::Arguments),
-    /// Measures a pack: survival, speed, get-up, roll, pushes.
+    /// Evaluates a pack: falls, speed, skills, response to the stick, pushes, terrain, encounters.
     Evaluate(cli::evaluate::Arguments),
     /// Prints the cost of a control step beside that of larger networks.
     Compare(cli::compare::Arguments),

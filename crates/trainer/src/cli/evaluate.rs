@@ -1,4 +1,4 @@
-//! `trainer evaluate`: measures a pack.
+//! `trainer evaluate`: evaluates a pack.
 
 use std::collections::BTreeMap;
 use std::io::Write;
@@ -37,13 +37,13 @@ pub(crate) struct Arguments {
     /// Fewer characters and seconds: under three minutes.
     #[arg(long)]
     quick: bool,
-    /// Measure these sections alone, separated by commas.
+    /// Evaluate only these sections, comma-separated; an unknown name lists them.
     #[arg(long, value_delimiter = ',', value_parser = section)]
     only: Vec<Section>,
-    /// Measure in this engine: mujoco or rapier.
+    /// Physics engine: mujoco or rapier. Rapier skips the sections encounters and race.
     #[arg(long, default_value = "mujoco", value_parser = engine)]
     physics: Engine,
-    /// So many characters in every measure, in place of the numbers that figures are published from.
+    /// Number of characters in every measurement. Published figures use the defaults.
     #[arg(long, value_parser = clap::value_parser!(u16).range(1..=10_000))]
     characters: Option<u16>,
     /// Leave turning to the policies: the player's controller does not slow down to turn.
@@ -142,14 +142,12 @@ pub(crate) fn run(
     let (pack, what) = (Arc::new(pack), (&effort, sections));
     let evaluation = evaluate_each(&model, &pack, config, what, &states, &progress, write)?;
     progress.finish();
-    show(&evaluation.player, arguments.plots.as_deref())?;
-    let text = serde_json::to_string_pretty(&evaluation)?;
-    match &arguments.json {
-        Some(path) => {
-            write_atomically(path, text.as_bytes())
-                .with_context(|| format!("cannot write {}", path.display()))?;
+    match written {
+        Ok(()) if arguments.json.is_some() => {}
+        written => {
+            say(serde_json::to_string_pretty(&evaluation)?)?;
+            written?;
         }
-        None => say(text)?,
     }
     show(&evaluation.player, arguments.plots.as_deref())
 }
@@ -197,6 +195,8 @@ fn states_of_clips(
             states.insert(node.name.clone(), clip_states(model, &clip.load(clips)?)?);
         }
     }
+    Ok(states)
+}
 
 #[cfg(test)]
 mod tests {
@@ -215,6 +215,4 @@ mod tests {
         make_ready(&file).unwrap();
         assert_eq!(std::fs::read(&file).unwrap(), b"an earlier one");
     }
-}
-    Ok(states)
 }
