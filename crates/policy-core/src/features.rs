@@ -8,7 +8,7 @@ use alloc::vec::Vec;
 
 use glam::Quat;
 
-use crate::heading::{Heading, axes_xz};
+use crate::heading::{Heading, axes_xz, product};
 use crate::observation::Cursor;
 use crate::skeleton::Skeleton;
 use crate::state::CharacterState;
@@ -38,8 +38,7 @@ pub fn discriminator_frame_into(skeleton: &Skeleton, state: &CharacterState, out
     cursor.push3(heading.heading_from_world(root.angular_velocity));
     for &body in skeleton.jointed_bodies() {
         let parent = skeleton.parent(body).map_or(Quat::IDENTITY, |parent| state.body(parent).rotation);
-        let local: Quat = parent.conjugate() * state.body(body).rotation;
-        let (x, z) = axes_xz(local);
+        let (x, z) = axes_xz(product(parent.conjugate(), state.body(body).rotation));
         cursor.push3(x);
         cursor.push3(z);
     }

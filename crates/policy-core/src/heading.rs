@@ -87,9 +87,56 @@ pub(crate) fn axes_xz(q: Quat) -> (Vec3, Vec3) {
     (Vec3::new(1.0 - (yy + zz), xy + wz, xz - wy), Vec3::new(xz + wy, yz - wx, 1.0 - (xx + yy)))
 }
 
+/// The product of two rotations: `b`, then `a`.
+///
+/// glam sums the terms of a component in one order with SIMD and in another without. This is the order of its SIMD code, so the bits are the
+/// same on every machine.
+#[inline]
+pub(crate) fn product(a: Quat, b: Quat) -> Quat {
+    Quat::from_xyzw(
+        (a.w * b.x + a.x * b.w) + (a.y * b.z - a.z * b.y),
+        (a.w * b.y - a.x * b.z) + (a.y * b.w + a.z * b.x),
+        (a.w * b.z + a.x * b.y) + (a.z * b.w - a.y * b.x),
+        (a.w * b.w - a.x * b.x) - (a.y * b.y + a.z * b.z),
+    )
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    /// Quaternions of length 1 that are the same on every machine.
+    fn rotations() -> impl Iterator<Item = Quat> {
+        let mut seed = 7u32;
+        let mut number = move || {
+            seed = seed.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
+            (seed >> 8) as f32 / (1 << 23) as f32 - 1.0
+        };
+        core::iter::repeat_with(move || {
+            let [x, y, z, w] = core::array::from_fn(|_| number());
+            let length = libm::sqrtf(x * x + y * y + z * z + w * w).max(1e-3);
+            Quat::from_xyzw(x / length, y / length, z / length, w / length)
+        })
+    }
+
+    /// Of the products of glam's SSE2 code.
+    const PRODUCTS: u64 = 0x2fa3_1aba_a6c7_2fc7;
+
+    #[test]
+    fn products_have_the_same_bits_on_every_machine() {
+        let hash = |hash: u64, part: f32| (hash ^ u64::from(part.to_bits())).wrapping_mul(0x100_0000_01b3);
+        let (mut ours, mut scalar) = (0xcbf2_9ce4_8422_2325, 0);
+        for (a, b) in rotations().zip(rotations().skip(1)).take(1000) {
+            let is = product(a, b);
+            assert!((is - a * b).length() < 1e-6);
+            ours = is.to_array().into_iter().fold(ours, hash);
+            // The order of glam's code without SIMD.
+            let x = a.w * b.x + a.x * b.w + a.y * b.z - a.z * b.y;
+            scalar += i32::from(x.to_bits() != is.x.to_bits());
+        }
+        assert_eq!(ours, PRODUCTS, "{ours:#x}");
+        assert!(scalar > 100, "the order matters: {scalar}");
+    }
 
     #[test]
     fn a_turned_body_faces_its_heading() {
