@@ -61,6 +61,8 @@ pub fn evaluate_batch_into(
         return assert!(blends.is_empty(), "a blend needs policies");
     };
     assert!(policies.iter().all(|p| p.same_shape(shape)), "blended policies have one shape");
+    let known = |blend: &Blend| blend.terms().iter().all(|term| term.policy.index() < policies.len());
+    assert!(blends.iter().all(|b| !b.terms().is_empty() && known(b)), "blends of these policies");
     assert_eq!(inputs.len(), blends.len() * shape.inputs(), "inputs of the batch");
     assert_eq!(out.len(), blends.len() * shape.outputs(), "outputs of the batch");
     scratch.order.clear();

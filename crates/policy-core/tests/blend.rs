@@ -209,3 +209,23 @@ fn wide_policies_blend_their_actions_too() {
     }
     assert!((0..200).all(|i| (out[i] - 0.5 * (actions[0][i] + actions[1][i])).abs() < 1e-6));
 }
+
+/// A blend that must not get into a batch.
+fn batch_of(blend: Blend) {
+    let policies = policies(2);
+    let (inputs, mut out) = ([0.1; 225], [0.0; 28]);
+    let mut scratch = BatchScratch::for_mlp(&policies[0], 1);
+    evaluate_batch_into(&policies, Arithmetic::Reproducible, &[blend], &inputs, &mut scratch, &mut out);
+}
+
+#[test]
+#[should_panic(expected = "blends of these policies")]
+fn a_batch_has_no_empty_blend() {
+    batch_of(Blend::default());
+}
+
+#[test]
+#[should_panic(expected = "blends of these policies")]
+fn a_batch_has_no_blend_of_an_unknown_policy() {
+    batch_of(Blend::between(p(1), p(2), 0.5));
+}
