@@ -16,7 +16,7 @@ use crate::ids::{BodyId, DiscriminatorId, NodeId, PolicyId};
 use crate::mlp::Mlp;
 use crate::pack::PackTensors;
 use crate::pack_error::PackError;
-use crate::skeleton::{Roles, Skeleton, SkeletonBody, SkeletonJoint};
+use crate::skeleton::{MAX_SKELETON_PARTS, Roles, Skeleton, SkeletonBody, SkeletonJoint};
 use crate::skill::{EndCondition, Skill};
 
 /// Most skills and most discriminators of a pack.
@@ -38,8 +38,16 @@ pub(crate) fn check_manifest(m: &Manifest) -> Result<(), PackError> {
         ("paths", m.paths.len(), MAX_NODES),
         ("discriminators", m.discriminators.len(), MAX_SKILLS),
         ("skills", m.skills.len(), MAX_SKILLS),
+        ("bodies", m.skeleton.bodies.len(), MAX_SKELETON_PARTS),
+        ("joints", m.skeleton.joints.len(), MAX_SKELETON_PARTS),
+        ("hands", m.skeleton.roles.hands.len(), MAX_SKELETON_PARTS),
+        ("feet", m.skeleton.roles.feet.len(), MAX_SKELETON_PARTS),
     ];
-    if let Some(&(what, found, most)) = counts.iter().find(|(_, found, most)| found > most) {
+    // Of paths and skills that are not too many themselves.
+    let paths = m.paths.iter().map(|path| ("policies of a path", path.nodes.len(), MAX_NODES));
+    let entries = m.skills.iter().map(|skill| ("entries of a skill", skill.entry.len(), MAX_NODES));
+    let mut counts = counts.into_iter().chain(paths).chain(entries);
+    if let Some((what, found, most)) = counts.find(|(_, found, most)| found > most) {
         return Err(PackError::TooMany { what, most, found });
     }
     let names = m.policies.iter().map(|p| ("policy", &p.name));
@@ -95,11 +103,14 @@ pub(crate) fn check_networks(m: &Manifest, t: &PackTensors, skeleton: &Skeleton)
 
 /// Every skill must be reachable from every node that a path runs through.
 pub(crate) fn check_reachable(graph: &PolicyGraph, skills: &[Skill]) -> Result<(), PackError> {
+    let mut seen = [false; MAX_NODES];
+    let is_new = |node: &NodeId| !core::mem::replace(&mut seen[node.index()], true);
+    let on_paths = graph.paths().iter().flat_map(|path| path.nodes().iter().copied());
+    let on_paths: Vec<NodeId> = on_paths.filter(is_new).collect();
     for skill in skills.iter().filter(|s| !s.entry.is_empty()) {
         let reaches =
             |from: &&NodeId| skill.entry.iter().any(|to| graph.routes().cost(**from, *to).is_finite());
-        let mut nodes = graph.paths().iter().flat_map(|path| path.nodes());
-        if let Some(from) = nodes.find(|from| !reaches(from)) {
+        if let Some(from) = on_paths.iter().find(|from| !reaches(from)) {
             let from = graph.node(*from).name.clone();
             return Err(PackError::Unreachable { skill: skill.name.clone(), from });
         }

@@ -64,6 +64,28 @@ fn messages_name_field_expected_and_found() {
     says(refused(|m, t| (m.policies.clear(), t.policies.clear()).1), &["1 to 64", "0"]);
 }
 
+/// Lists that are looked up in each other are bounded before that, so that a small file can't take minutes.
+#[test]
+fn long_lists_are_refused_before_they_are_looked_up() {
+    let most = |change: fn(&mut Manifest)| {
+        let (mut m, t) = (manifest(), tensors(0.0));
+        change(&mut m);
+        match CharacterPack::from_parts(m, t) {
+            Err(PackError::TooMany { what, most, found }) => (what, most, found),
+            other => panic!("expected too many, found {other:?}"),
+        }
+    };
+    assert_eq!(most(|m| m.skeleton.bodies = vec![m.skeleton.bodies[1].clone(); 257]), ("bodies", 256, 257));
+    assert_eq!(most(|m| m.skeleton.joints = vec![m.skeleton.joints[0].clone(); 257]), ("joints", 256, 257));
+    assert_eq!(most(|m| m.skeleton.roles.hands = vec!["head".into(); 257]), ("hands", 256, 257));
+    assert_eq!(most(|m| m.skeleton.roles.feet = vec!["head".into(); 257]), ("feet", 256, 257));
+    let to_and_fro = |m: &mut Manifest| {
+        m.paths[0].nodes = ["idle", "walk"].into_iter().cycle().take(65).map(Into::into).collect();
+    };
+    assert_eq!(most(to_and_fro), ("policies of a path", 64, 65));
+    assert_eq!(most(|m| m.skills[0].entry = vec!["walk".into(); 65]), ("entries of a skill", 64, 65));
+}
+
 /// Bytes of a pack without a checksum and with its header's text changed.
 fn with_header(change: impl Fn(String) -> String) -> Vec<u8> {
     let bytes = pack(0.0).to_bytes();
