@@ -5,6 +5,9 @@ use alloc::vec::Vec;
 use crate::skeleton::Skeleton;
 use crate::state::JointTargets;
 
+/// Largest centre and gain, radians. Far beyond any joint, and far below what makes a target infinite.
+const MOST_RADIANS: f32 = 1000.0;
+
 /// Per joint: `target = centre + gain * action`, radians.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ActionScaling {
@@ -16,9 +19,10 @@ pub struct ActionScaling {
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum ActionScalingError {
-    /// A centre or gain is not finite, or a gain is not positive.
+    /// A centre is beyond 1000 rad, a gain is not positive or beyond 1000 rad, or one is not a number.
     #[error(
-        "expected a finite centre and a finite positive gain for joint {joint}, found {centre} and {gain}"
+        "expected action_centre from -{MOST_RADIANS} to {MOST_RADIANS} and a positive action_gain up to {MOST_RADIANS} for \
+         joint {joint}, found {centre} and {gain}"
     )]
     Number {
         /// Index of the joint.
@@ -42,13 +46,14 @@ impl ActionScaling {
     /// Scaling with the given centre and gain of each joint, radians.
     ///
     /// # Errors
-    /// When the lengths differ, a number is not finite or a gain is not positive.
+    /// When the lengths differ, a number is not finite or beyond 1000 rad, or a gain is not positive.
     pub fn from_centre_and_gain(centre: &[f32], gain: &[f32]) -> Result<Self, ActionScalingError> {
         if centre.len() != gain.len() {
             return Err(ActionScalingError::Count { centres: centre.len(), gains: gain.len() });
         }
         for (joint, (&c, &g)) in centre.iter().zip(gain).enumerate() {
-            if !c.is_finite() || !g.is_finite() || g <= 0.0 {
+            let fits = c.abs() <= MOST_RADIANS && g > 0.0 && g <= MOST_RADIANS;
+            if !fits {
                 return Err(ActionScalingError::Number { joint, centre: c, gain: g });
             }
         }
@@ -123,6 +128,9 @@ mod tests {
         let made = ActionScaling::from_centre_and_gain;
         assert!(matches!(made(&[0.0, 0.0], &[1.0, 0.0]), Err(Number { joint: 1, .. })));
         assert!(matches!(made(&[f32::NAN], &[1.0]), Err(Number { joint: 0, .. })));
+        assert!(matches!(made(&[0.0, 3e38], &[1.0, 1.0]), Err(Number { joint: 1, .. })));
+        assert!(matches!(made(&[0.0], &[3e38]), Err(Number { joint: 0, .. })));
+        assert!(made(&[-1000.0], &[1000.0]).is_ok());
         assert!(matches!(made(&[0.0], &[]), Err(Count { centres: 1, gains: 0 })));
     }
 }

@@ -55,6 +55,8 @@ fn messages_name_field_expected_and_found() {
     says(refused(|m, _| m.recovery = Some("fly".into())), &["recovery", "fly"]);
     says(refused(|m, _| m.control_hz = f32::NAN), &["control_hz", "1 to 1000", "NaN"]);
     says(refused(|m, _| m.action_gain[3] = -1.0), &["joint 3", "positive", "-1"]);
+    says(refused(|m, _| m.action_gain[3] = 3e38), &["joint 3", "action_gain", "1000", "300000"]);
+    says(refused(|m, _| m.action_centre[3] = -3e38), &["joint 3", "action_centre", "1000", "-300000"]);
     says(refused(|m, _| m.action_gain.truncate(5)), &["28 action_gain", "5"]);
     says(refused(|m, _| m.policies[2].fall_height = Some(-1.0)), &["fall_height", "jog", "-1"]);
     says(refused(|_, t| drop(t.policies.pop())), &["7 policies", "6"]);
