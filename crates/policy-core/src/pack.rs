@@ -1,5 +1,6 @@
 //! The character pack: everything that a character needs at run time, checked and immutable.
 
+use alloc::string::String;
 use alloc::sync::Arc;
 use alloc::vec::Vec;
 
@@ -49,18 +50,19 @@ pub struct CharacterPack {
 }
 
 impl CharacterPack {
-    /// A pack of a manifest and its tensors.
+    /// A pack of a manifest and its tensors. A checksum in the manifest is dropped: it belongs to the bytes of a file.
     ///
     /// # Errors
     /// When anything is not as the manifest or this library says; see [`PackError`].
-    pub fn from_parts(manifest: Manifest, tensors: PackTensors) -> Result<Self, PackError> {
+    pub fn from_parts(mut manifest: Manifest, tensors: PackTensors) -> Result<Self, PackError> {
+        manifest.checksum = None;
         check_manifest(&manifest)?;
         let skeleton = skeleton(&manifest.skeleton)?;
         check_networks(&manifest, &tensors, &skeleton)?;
         let names: Vec<&str> = manifest.policies.iter().map(|p| p.name.as_str()).collect();
         let nodes = manifest.policies.iter().map(|p| {
             let field = || alloc::format!("policy \"{}\"", p.name);
-            let variant = |name: &Option<alloc::string::String>| {
+            let variant = |name: &Option<String>| {
                 name.as_ref().map(|name| find_node(field(), name, &names)).transpose()
             };
             Ok(Node {
@@ -97,6 +99,12 @@ impl CharacterPack {
         let graph = PolicyGraph::from_parts(nodes, &edges, paths, &tensors.policies)?;
         check_reachable(&graph, &skills)?;
         Ok(Self { manifest, tensors, skeleton: Arc::new(skeleton), graph, skills, recovery, action })
+    }
+
+    /// The same pack with the checksum of its file, which was compared with the bytes.
+    pub(crate) fn with_checksum(mut self, checksum: Option<String>) -> Self {
+        self.manifest.checksum = checksum;
+        self
     }
 
     /// The description the pack was made of.

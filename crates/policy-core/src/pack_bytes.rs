@@ -67,7 +67,8 @@ impl CharacterPack {
             mesh: reader.mesh(),
         };
         reader.refuse_unused()?;
-        Self::from_parts(manifest, tensors)
+        let checksum = manifest.checksum.clone();
+        Ok(Self::from_parts(manifest, tensors)?.with_checksum(checksum))
     }
 
     /// The pack as the bytes of a file of the present version, with a checksum. The same pack always gives the same bytes.

@@ -24,6 +24,9 @@ fn a_pack_survives_its_bytes() {
     assert!(second.is_verified() && !first.is_verified());
     assert_eq!(first.tensors(), second.tensors());
     assert_eq!(bytes, second.to_bytes(), "the same pack gives the same bytes");
+    let changed = PackTensors { mesh: Some(vec![7]), ..second.tensors().clone() };
+    let changed = CharacterPack::from_parts(second.manifest().clone(), changed).unwrap();
+    assert!(!changed.is_verified(), "the checksum is one of other bytes");
 }
 
 #[test]
