@@ -1,7 +1,8 @@
 //! A [`ControllerState`] as bytes, little-endian, of one length for each pack.
 //!
-//! The side of a turn follows from the target in the report. Order: version, report, fall timers, frame history, resting blend, interrupted skill, joint targets, hand-over, settling, course,
-//! giving way, unevenness, urgency, capture step, push aside. An absent value is a zero flag and zeros, so that equal states give equal bytes.
+//! Order: version, report, fall timers, frame history, resting blend, interrupted skill, joint targets, targets before the hand-over, times of
+//! hand-over, settling and pending skill, steering with the side of a turn, giving way, unevenness, urgency, capture step, catch. An absent value
+//! is a zero flag and zeros, so that equal states give equal bytes.
 
 use crate::agility::Urgency;
 use crate::blend::{Blend, BlendTerm, MAX_BLEND_TERMS};
@@ -14,10 +15,9 @@ use crate::pack::CharacterPack;
 use crate::path::GraphPosition;
 use crate::report::{StateFault, TickReport};
 use crate::skill::{Refusal, SkillEnd, SkillProgress};
-use crate::steering::side_of;
 
 /// First four bytes: `PSS` and the version.
-const VERSION: u32 = u32::from_le_bytes(*b"PSS\x0c");
+const VERSION: u32 = u32::from_le_bytes(*b"PSS\x0d");
 
 const POSITION_LEN: usize = 2 + 2 + 4;
 const BLEND_LEN: usize = 1 + MAX_BLEND_TERMS * (2 + 4 * MAX_LAYERS);
@@ -25,7 +25,7 @@ const SKILL_LEN: usize = 3;
 const PROGRESS_LEN: usize = SKILL_LEN + 4 + 4 + 1 + 4;
 const REPORT_LEN: usize =
     2 * POSITION_LEN + BLEND_LEN + 1 + 8 + PROGRESS_LEN + 2 * SKILL_LEN + 2 * (SKILL_LEN + 1) + 3;
-const FIXED_LEN: usize = 4 + REPORT_LEN + 8 + 2 + BLEND_LEN + 4 + SKILL_LEN + 12 + 12 + 12 + 57 + 24 + 8;
+const FIXED_LEN: usize = 4 + REPORT_LEN + 8 + 2 + BLEND_LEN + 4 + SKILL_LEN + 12 + 13 + 12 + 57 + 24 + 8;
 
 impl ControllerState {
     /// Number of bytes; one for all states of a pack.
@@ -55,6 +55,7 @@ impl ControllerState {
         w.floats(&[self.handover_secs, self.settle_secs, self.pending_secs]);
         let steering = self.steering;
         w.floats(&[steering.velocity.x, steering.velocity.y, steering.trim]);
+        w.put([code(&SIDES, steering.side)]);
         w.floats(&[self.give_way.speed, self.give_way.pace, self.give_way.stop_secs]);
         let Urgency { to_move, to_rest, to_stand, at_rest, as_asked, at_pace, start, stop, turn } =
             self.urgency;
@@ -107,7 +108,7 @@ impl ControllerState {
         let steering = &mut self.steering;
         (steering.velocity.x, steering.velocity.y) = (r.float(), r.float());
         steering.trim = r.float();
-        steering.side = side_of(self.report.target);
+        steering.side = r.one_of(&SIDES, "side of a turn")?;
         let give_way = &mut self.give_way;
         (give_way.speed, give_way.pace, give_way.stop_secs) = (r.float(), r.float(), r.float());
         self.unevenness = r.float();
@@ -202,6 +203,8 @@ const EVALUATIONS: [Evaluation; 4] =
     [Evaluation::Single, Evaluation::Cached, Evaluation::Fused, Evaluation::Actions];
 const ENDS: [SkillEnd; 3] = [SkillEnd::Recognised, SkillEnd::TimeLimit, SkillEnd::Interrupted];
 const REFUSALS: [Refusal; 3] = [Refusal::Upright, Refusal::Unknown, Refusal::TookTooLong];
+/// To no side, to the left, to the right.
+const SIDES: [f32; 3] = [0.0, 1.0, -1.0];
 const FAULTS: [StateFault; 2] = [StateFault::NonFinite, StateFault::WrongSize];
 
 fn code<T: PartialEq>(values: &[T], value: T) -> u8 {

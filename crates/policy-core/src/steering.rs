@@ -23,9 +23,6 @@ const LARGEST_RADIANS: f32 = 0.5 * PI;
 /// before it turns.
 const BEHIND_RADIANS: f32 = 0.75 * PI;
 
-/// A target within this of that angle was shown as one behind, radians.
-const SHOWN_RADIANS: f32 = 1e-3;
-
 /// Angle off the heading from which both sides are as near, radians. There a turn goes to the side to which the body turns already.
 const EITHER_RADIANS: f32 = 0.92 * PI;
 
@@ -58,7 +55,7 @@ pub struct SteeringState {
     pub(crate) velocity: Vec2,
     /// Angle that is added against drift, radians.
     pub(crate) trim: f32,
-    /// The side to which it turns about, positive to the left; 0 while the target is not behind. A hip that swings in a walk must
+    /// The side to which it turns about, 1 to the left, -1 to the right; 0 while the target is not behind. A hip that swings in a walk must
     /// not change it.
     pub(crate) side: f32,
 }
@@ -140,16 +137,6 @@ fn way_to(target: Vec2, state: &CharacterState) -> Option<Vec2> {
     let way = target - state.root().position.truncate();
     let distance = libm::sqrtf(way.length_squared());
     (distance.is_finite() && distance > 1e-3).then_some(way)
-}
-
-/// The side of a turn of which this is the target that the policy saw: a target that lies behind is shown at one angle exactly.
-pub(crate) fn side_of([x, y]: [f32; 2]) -> f32 {
-    let angle = libm::atan2f(y, x);
-    if libm::fabsf(libm::fabsf(angle) - BEHIND_RADIANS) < SHOWN_RADIANS {
-        1.0_f32.copysign(angle)
-    } else {
-        0.0
-    }
 }
 
 /// An angle in [-pi, pi].

@@ -186,3 +186,12 @@ fn a_saved_state_goes_on_with_its_steps() {
         assert_eq!(controller.report(), other.report());
     }
 }
+
+#[test]
+fn bytes_keep_the_side_of_a_turn_that_a_step_interrupts() {
+    let mut controller = controller_at("walk", true);
+    tick(&mut controller, &moving(0.0, 0.0), Some(3.0));
+    assert!(tick(&mut controller, &moving(0.0, -0.8), Some(0.0)) > 0.0);
+    let [saved, read] = common::saved_and_read(&controller);
+    assert_eq!(read, saved);
+}

@@ -69,14 +69,21 @@ pub fn weight_of(controller: &Controller, name: &str) -> f32 {
     weight(&acted, policy(name))
 }
 
+/// A controller's state, and the same through bytes.
+pub fn saved_and_read(controller: &Controller) -> [ControllerState; 2] {
+    let mut saved = ControllerState::new(controller.pack());
+    controller.save_into(&mut saved);
+    let mut bytes = vec![0; saved.byte_len()];
+    saved.write_bytes(&mut bytes);
+    let mut read = ControllerState::new(controller.pack());
+    read.read_bytes(controller.pack(), &bytes).unwrap();
+    [saved, read]
+}
+
 /// Lets `to` go on where `from` is, through bytes.
 pub fn hand_over(from: &Controller, to: &mut Controller) {
-    let mut state = ControllerState::new(from.pack());
-    from.save_into(&mut state);
-    let mut bytes = vec![0; state.byte_len()];
-    state.write_bytes(&mut bytes);
-    state.read_bytes(to.pack(), &bytes).unwrap();
-    to.restore(&state).unwrap();
+    let [_, read] = saved_and_read(from);
+    to.restore(&read).unwrap();
 }
 
 pub const POLICY_SIZES: [usize; 4] = [INPUT, 128, 32, JOINTS];
