@@ -193,6 +193,8 @@ enum PsRefusal
   PS_REFUSAL_UNKNOWN = 1,
   // It was pending for 4 s and could not start.
   PS_REFUSAL_TOOK_TOO_LONG = 2,
+  // It was pending when the recovery skill started after a fall.
+  PS_REFUSAL_FELL = 3,
 };
 #ifndef __cplusplus
 #if __STDC_VERSION__ >= 202311L

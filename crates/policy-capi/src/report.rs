@@ -47,6 +47,8 @@ pub enum PsRefusal {
     Unknown = 1,
     /// It was pending for 4 s and could not start.
     TookTooLong = 2,
+    /// It was pending when the recovery skill started after a fall.
+    Fell = 3,
 }
 
 /// Why the state was not acted on.
@@ -164,6 +166,7 @@ impl From<&TickReport> for PsReport {
                 Refusal::Upright => PsRefusal::Upright as i32,
                 Refusal::Unknown => PsRefusal::Unknown as i32,
                 Refusal::TookTooLong => PsRefusal::TookTooLong as i32,
+                Refusal::Fell => PsRefusal::Fell as i32,
             }),
             fallen: report.fallen.into(),
             fault: match report.fault {

@@ -91,6 +91,8 @@ pub enum Refusal {
     Unknown,
     /// It was pending for 4 s and could not start: the way to an entry is long, or the run-up is blocked.
     TookTooLong,
+    /// It was pending when the recovery skill started after a fall.
+    Fell,
 }
 
 /// Progress of a running skill.

@@ -202,7 +202,7 @@ impl Writer<'_> {
 const EVALUATIONS: [Evaluation; 4] =
     [Evaluation::Single, Evaluation::Cached, Evaluation::Fused, Evaluation::Actions];
 const ENDS: [SkillEnd; 3] = [SkillEnd::Recognised, SkillEnd::TimeLimit, SkillEnd::Interrupted];
-const REFUSALS: [Refusal; 3] = [Refusal::Upright, Refusal::Unknown, Refusal::TookTooLong];
+const REFUSALS: [Refusal; 4] = [Refusal::Upright, Refusal::Unknown, Refusal::TookTooLong, Refusal::Fell];
 /// To no side, to the left, to the right.
 const SIDES: [f32; 3] = [0.0, 1.0, -1.0];
 const FAULTS: [StateFault; 2] = [StateFault::NonFinite, StateFault::WrongSize];

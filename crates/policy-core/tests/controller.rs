@@ -9,7 +9,8 @@ use policy_core::bindings::{Control, PathBinding};
 use policy_core::glam::{Quat, Vec2, Vec3};
 use policy_core::{
     Bindings, Blend, BlendMode, Button, Buttons, CharacterPack, Command, CommandMapper, Controller,
-    ControllerConfig, GamepadState, Goal, GraphPosition, Heading, PathId, SkillEnd, SkillId, StateFault,
+    ControllerConfig, GamepadState, Goal, GraphPosition, Heading, PathId, Refusal, SkillEnd, SkillId,
+    StateFault,
 };
 use proptest::prelude::*;
 
@@ -124,6 +125,29 @@ fn a_fall_starts_the_recovery_and_lying_on_repeats_it() {
     assert_eq!(started.len(), 3, "{started:?}");
     assert!((8..=10).contains(&started[0]) && (88..=92).contains(&(started[1] - started[0])), "{started:?}");
     assert!(controller.is_down());
+}
+
+#[test]
+fn a_skill_that_is_pending_in_a_fall_is_refused() {
+    let mut controller = controller(-4.0, "idle");
+    let roll = skill(&controller, "roll");
+    let mut lying = standing();
+    lying.bodies[0].position.z = 0.2;
+    let request = Command { skill: Some(roll), ..Command::default() };
+    let ends = |controller: &mut Controller| {
+        (0..400).find_map(|_| {
+            controller.tick(&lying, &Command::default(), DT);
+            controller.report().skill_refused
+        })
+    };
+    controller.tick(&lying, &request, DT);
+    assert_eq!(controller.report().pending_skill, Some(roll));
+    assert_eq!(ends(&mut controller), Some((roll, Refusal::Fell)));
+    assert_eq!(controller.report().skill_started, controller.pack().recovery());
+    // Asked for while the character lies, and its recovery has to begin anew.
+    controller.tick(&lying, &request, DT);
+    assert_eq!(ends(&mut controller), Some((roll, Refusal::Fell)));
+    assert_eq!(controller.report().pending_skill, None);
 }
 
 #[test]

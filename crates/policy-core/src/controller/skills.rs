@@ -89,7 +89,16 @@ impl Controller {
         // A character that lies where its time to stand up is over tries again at once.
         let low = fall_height(pack.graph(), self.state.report.position).is_some_and(|h| heights.root < h);
         if self.config.auto_recover && low && pack.recovery() == Some(progress.skill) {
-            self.start_skill(progress.skill);
+            self.recover(progress.skill);
+        }
+    }
+
+    /// Starts the recovery skill of a character that lies. Another one that was pending is refused.
+    fn recover(&mut self, recovery: SkillId) {
+        let pending = self.state.report.pending_skill.filter(|pending| *pending != recovery);
+        self.start_skill(recovery);
+        if let Some(pending) = pending {
+            self.state.report.skill_refused = Some((pending, Refusal::Fell));
         }
     }
 
@@ -104,7 +113,7 @@ impl Controller {
         report.fallen = self.state.fall.tick(limit, lies, state.root_height(), dt);
         let recovery = self.pack.recovery().filter(|_| self.config.auto_recover && report.fallen);
         if let Some(recovery) = recovery {
-            self.start_skill(recovery);
+            self.recover(recovery);
         }
     }
 

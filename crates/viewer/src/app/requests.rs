@@ -25,6 +25,7 @@ impl App {
             Refusal::Upright => "it is up already",
             Refusal::Unknown => "the pack has no such skill",
             Refusal::TookTooLong => "it could not start in time",
+            Refusal::Fell => "the character fell",
         };
         self.refused = Some((format!("{name}: {why}"), REFUSAL_SECS));
     }
