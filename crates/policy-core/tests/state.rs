@@ -224,6 +224,46 @@ fn another_pack_keeps_position_and_skill_by_their_names() {
 }
 
 #[test]
+fn another_pack_keeps_an_interruption_and_the_times_of_skills() {
+    let pack = Arc::new(common::pack(-4.0));
+    let roll = pack.skill_named("roll").unwrap();
+    let request = Command { skill: Some(roll), ..Command::default() };
+    let config = ControllerConfig { start: n(1), ..ControllerConfig::default() };
+    let mut reset = Controller::with_config(pack.clone(), config);
+    reset.tick(&standing(), &request, DT);
+    reset.reset();
+    reset.set_pack(pack.clone()).unwrap();
+    reset.tick(&standing(), &Command::default(), DT);
+    assert_eq!(reset.report().skill_ended, Some((roll, SkillEnd::Interrupted)));
+
+    // A skill that needs a speed waits for it, 4 s in all.
+    let mut manifest = common::manifest();
+    manifest.skills[0].minimum_speed_mps = 0.8;
+    let slow = Arc::new(CharacterPack::from_parts(manifest, common::tensors(-4.0)).unwrap());
+    let mut waits = Controller::with_config(slow.clone(), config);
+    waits.tick(&standing(), &request, DT);
+    for _ in 0..60 {
+        waits.tick(&standing(), &Command::default(), DT);
+    }
+    waits.set_pack(slow).unwrap();
+    let left = (0..200).position(|_| {
+        waits.tick(&standing(), &Command::default(), DT);
+        waits.report().skill_refused.is_some()
+    });
+    assert!(left.is_some_and(|ticks| (55..65).contains(&ticks)), "{left:?} ticks");
+
+    let mut settles = Controller::with_config(pack.clone(), config);
+    settles.tick(&standing(), &request, DT);
+    while settles.report().skill_ended.is_none() {
+        settles.tick(&standing(), &Command::default(), DT);
+    }
+    settles.set_pack(pack).unwrap();
+    let goal = Goal::Path { path: PathId::new(0), coordinate: 3.0 };
+    settles.tick(&standing(), &Command { goal, ..Command::default() }, DT);
+    assert_eq!(settles.report().position.as_node(), Some(n(1)), "it stays in its gait for a moment");
+}
+
+#[test]
 fn wrong_sizes_and_wrong_rates_are_reported() {
     let pack = Arc::new(common::pack(0.0));
     let mut controller = Controller::new(pack);

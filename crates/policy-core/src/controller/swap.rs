@@ -20,8 +20,8 @@ pub enum SwapError {
 }
 
 impl Controller {
-    /// Goes on with another pack for the same skeleton, for hot reload. Position, running and pending skill are kept by their
-    /// names. A position that the new pack lacks becomes the start node; a skill that it lacks is
+    /// Goes on with another pack for the same skeleton, for hot reload. Position, running, pending and interrupted skill are kept by
+    /// their names, and so are the times that a pending skill has waited and a character still settles. A position that the new pack lacks becomes the start node; a skill that it lacks is
     /// dropped. Allocates.
     ///
     /// # Errors
@@ -44,6 +44,9 @@ impl Controller {
         state.report.pending_skill = pending;
         state.report.skill =
             running.map(|(progress, skill)| crate::skill::SkillProgress { skill, ..progress });
+        state.interrupted = self.state.interrupted.and_then(skill);
+        state.pending_secs = self.state.pending_secs;
+        state.settle_secs = self.state.settle_secs;
         state.fall = self.state.fall;
         state.targets.copy_from_slice(&self.state.targets);
         state.handover_from.copy_from_slice(&self.state.handover_from);
