@@ -47,10 +47,11 @@ pub struct PsConfig {
     pub assist_rise: i32,
     /// Node to start at.
     pub start_node: i32,
-    /// Time over which joint targets pass from one policy to the other when a skill starts or ends, seconds; 0 for a jump.
+    /// Time over which joint targets pass from one policy to the other when a skill starts or ends, seconds, at most 3600; 0 for a
+    /// jump.
     pub handover_secs: f32,
-    /// Time after a skill in which the character stays in the gait that the skill returns to, and turns little, seconds; 0 to go on at
-    /// once.
+    /// Time after a skill in which the character stays in the gait that the skill returns to, and turns little, seconds, at most
+    /// 3600; 0 to go on at once.
     pub settle_secs: f32,
     /// Not 0: fast gaits slow down and slow ones speed up while the target lies far off the heading.
     pub turn_assist: i32,
@@ -76,7 +77,7 @@ pub struct PsConfig {
     pub give_way: i32,
     /// Share of its speed towards the target below which it is held up, in (0, 1).
     pub give_way_held_up_share: f32,
-    /// How long it stands then, seconds; at least 0.
+    /// How long it stands then, seconds; 0 to 3600.
     pub give_way_stop_secs: f32,
     /// Not 0: blend gaits with their variants for rough ground where the ground is uneven.
     pub footing: i32,

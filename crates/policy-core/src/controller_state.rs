@@ -13,7 +13,6 @@ use crate::features::FrameHistory;
 use crate::give_way::GiveWayState;
 use crate::ids::SkillId;
 use crate::pack::CharacterPack;
-use crate::path::GraphPosition;
 use crate::report::TickReport;
 use crate::state::JointTargets;
 use crate::steering::SteeringState;
@@ -160,65 +159,5 @@ impl ControllerState {
     pub(crate) fn same_size(&self, other: &Self) -> bool {
         self.targets.len() == other.targets.len()
             && self.history.parts().0.len() == other.history.parts().0.len()
-    }
-
-    /// Checks every index and number against a pack, so that nothing restored can fail later.
-    pub(crate) fn check(&self, pack: &CharacterPack) -> Result<(), StateError> {
-        let field = |field, expected, holds: bool| {
-            if holds { Ok(()) } else { Err(StateError::Field { field, expected }) }
-        };
-        let skeleton = pack.skeleton();
-        let sized = self.targets.len() == skeleton.joint_count()
-            && self.history.parts().0.len() == FrameHistory::new_len(skeleton.frame_len());
-        field("size", "the sizes of the pack's skeleton", sized)?;
-        let place = |position: GraphPosition| pack.graph().contains(position);
-        field("position", "a position on the graph", place(self.report.position))?;
-        field("goal", "a position on the graph", place(self.report.goal))?;
-        let policies = pack.policies().len();
-        let known = |blend: &crate::Blend| {
-            let good = |w: &f32| w.is_finite();
-            blend.terms().iter().all(|t| t.policy.index() < policies && t.weights.iter().all(good))
-        };
-        field("blend", "finite weights of the pack's policies", known(&self.report.blend))?;
-        field("resting blend", "finite weights of the pack's policies", known(&self.rest.last))?;
-        let some = self.rest.rested == 0 || !self.rest.last.terms().is_empty();
-        field("resting blend", "a policy", some)?;
-        let r = &self.report;
-        let skills = [r.skill.map(|s| s.skill), r.pending_skill, r.skill_started, self.interrupted];
-        let ended = [r.skill_ended.map(|(s, _)| s)];
-        let exists = |s: &SkillId| s.index() < pack.skills().len();
-        let all = skills.iter().chain(&ended).flatten().all(exists);
-        field("skill", "skills of the pack", all)?;
-        let mut numbers = self.targets.iter().chain(&self.handover_from).chain(self.history.parts().0);
-        let times = [
-            self.fall.low_seconds,
-            self.fall.rising_seconds,
-            self.handover_secs,
-            self.settle_secs,
-            self.pending_secs,
-        ];
-        let steering = [self.steering.velocity.x, self.steering.velocity.y, self.steering.trim];
-        let give_way = [self.give_way.speed, self.give_way.pace, self.give_way.stop_secs];
-        let Urgency { to_move, to_rest, to_stand, at_rest, as_asked, at_pace, start, stop, turn } =
-            &self.urgency;
-        let urgency = [to_move, to_rest, to_stand, at_rest, as_asked, at_pace];
-        let lasting =
-            [&start.share, &start.secs, &stop.share, &stop.secs, &turn.share, &turn.way.x, &turn.way.y];
-        let CaptureStep { acts, way, facing } = self.capture_step;
-        let capture_step = [acts.share, acts.secs, way.x, way.y, facing.x, facing.y];
-        let mut others = times
-            .iter()
-            .chain(&steering)
-            .chain(&give_way)
-            .chain([&self.unevenness])
-            .chain(urgency)
-            .chain(lasting)
-            .chain(&capture_step)
-            .chain([&self.catch.share, &self.catch.secs]);
-        let finite = numbers.all(|n| n.is_finite()) && others.all(|n| n.is_finite());
-        field("numbers", "finite numbers", finite)?;
-        let progress = r.skill.map_or([0.0; 2], |s| [s.seconds, s.held_seconds]);
-        let counted = progress.iter().all(|n| n.is_finite()) && r.target.iter().all(|n| n.is_finite());
-        field("report", "finite numbers", counted)
     }
 }

@@ -9,6 +9,7 @@ use crate::graph::PolicyGraph;
 use crate::heading::Heading;
 use crate::path::GraphPosition;
 use crate::state::CharacterState;
+use crate::state_check::countdown_secs;
 
 /// Cosine of the largest angle off the heading at which a target is ahead. A character that turns slows down by itself.
 const AHEAD: f32 = 0.8;
@@ -27,7 +28,7 @@ const LEAST_PACE: f32 = 0.6;
 pub struct GiveWay {
     /// Share of its pace below which it is held up, in (0, 1).
     pub held_up_share: f32,
-    /// How long it stands then, seconds.
+    /// How long it stands then, seconds; at most 3600.
     pub stop_secs: f32,
 }
 
@@ -77,7 +78,7 @@ impl GiveWay {
         memory.stop_secs = (memory.stop_secs - dt).max(0.0);
         let ahead = Heading::from_rotation(root.rotation).direction().dot(to_target) > AHEAD;
         if ahead && memory.pace > LEAST_PACE && memory.speed < self.held_up_share * memory.pace {
-            *memory = GiveWayState { pace: 0.0, stop_secs: self.stop_secs, ..*memory };
+            *memory = GiveWayState { pace: 0.0, stop_secs: countdown_secs(self.stop_secs), ..*memory };
         }
         match command.goal {
             Goal::Path { path, .. } if memory.stop_secs > 0.0 => {

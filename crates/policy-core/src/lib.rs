@@ -103,6 +103,7 @@ mod skill;
 mod starts_and_stops;
 mod state;
 mod state_bytes;
+mod state_check;
 mod steering;
 mod strafe;
 pub mod training;

@@ -102,13 +102,91 @@ fn bad_bytes_are_refused_and_leave_a_new_state() {
         let at = b.len() - 4;
         b[at..at + 4].copy_from_slice(&f32::NAN.to_le_bytes());
     };
-    assert!(matches!(refused(&numbers), StateError::Field { field: "numbers", .. }));
+    assert!(matches!(refused(&numbers), StateError::Field { field: "times", .. }));
     // Behind the flag of a turn lie the eight numbers of a capture step and of a catch.
     let flag = |b: &mut Vec<u8>| {
         let at = b.len() - 8 * 4 - 1;
         b[at] = 2;
     };
     assert!(matches!(refused(&flag), StateError::Field { field: "a flag", .. }));
+}
+
+/// Bytes of a state with one number replaced: of the settling time, a share, a direction, a joint target and so on.
+#[test]
+fn numbers_out_of_their_ranges_are_refused() {
+    let pack = Arc::new(common::pack(-4.0));
+    let config = ControllerConfig { start: n(1), ..config() };
+    let mut controller = Controller::with_config(pack.clone(), config);
+    let roll = Command { skill: pack.skill_named("roll"), ..Command::default() };
+    controller.tick(&standing(), &roll, DT);
+    let mut state = ControllerState::new(&pack);
+    controller.save_into(&mut state);
+    let mut good = vec![0; state.byte_len()];
+    state.write_bytes(&mut good);
+    let len = good.len();
+    let steering = len - (13 + 12 + 57 + 24 + 8);
+    let urgency = steering + 13 + 12;
+    let mut field_of = |at: usize, number: f32| {
+        let mut bytes = good.clone();
+        bytes[at..at + 4].copy_from_slice(&number.to_le_bytes());
+        match state.read_bytes(&pack, &bytes) {
+            Ok(()) => "none",
+            Err(StateError::Field { field, .. }) => field,
+            Err(other) => panic!("{other}"),
+        }
+    };
+    let [handover, settle, pending] = [steering - 12, steering - 8, steering - 4];
+    for at in [handover, settle, urgency - 4, len - 4] {
+        assert_eq!([1e30, -1.0, 3600.0].map(|n| field_of(at, n)), ["times", "times", "none"], "{at}");
+    }
+    assert_eq!([-1e30, 1e30, 5.0].map(|n| field_of(pending, n)), ["counted times", "counted times", "none"]);
+    // Of the start, of the stop, of a capture step.
+    for at in [urgency + 8 * 4, urgency + 10 * 4, len - 7 * 4] {
+        assert_eq!(
+            [11.0, -1.0, 0.3].map(|n| field_of(at, n)),
+            ["times of moments", "times of moments", "none"]
+        );
+    }
+    let shares = (0..8).chain([9, 11]).map(|i| urgency + 4 * i).chain([len - 32, len - 8]);
+    for at in shares {
+        assert_eq!([1.5, -0.1, 1.0].map(|n| field_of(at, n)), ["shares", "shares", "none"], "{at}");
+    }
+    // Of a turn, of steps, of where they face.
+    for at in [urgency + 12 * 4, len - 24, len - 16] {
+        assert_eq!([3.0, 1e-3, 1.0].map(|n| field_of(at, n)), ["directions", "directions", "none"], "{at}");
+    }
+    for at in [handover - 4, handover - 4 - 4 * 28] {
+        assert_eq!([1e38, -1e38, 99.0].map(|n| field_of(at, n)), ["joint targets", "joint targets", "none"]);
+    }
+    assert_eq!(field_of(steering, f32::INFINITY), "numbers");
+}
+
+#[test]
+fn a_state_whose_times_were_counted_for_hours_is_read() {
+    let pack = Arc::new(common::pack(-4.0));
+    let config = ControllerConfig {
+        auto_recover: false,
+        settle_secs: 1e9,
+        handover_secs: f32::INFINITY,
+        start: n(1),
+        ..config()
+    };
+    let mut controller = Controller::with_config(pack.clone(), config);
+    let roll = Command { skill: pack.skill_named("roll"), ..Command::default() };
+    controller.tick(&standing(), &roll, DT);
+    while controller.report().skill.is_some() {
+        controller.tick(&standing(), &Command::default(), 0.25);
+    }
+    let [saved, read] = common::saved_and_read(&controller);
+    assert_eq!(read, saved, "a time that a game chose");
+    let mut lying = standing();
+    lying.bodies[0].position.z = 0.2;
+    for _ in 0..5 * 3600 {
+        controller.tick(&lying, &Command::default(), 0.25);
+    }
+    assert!(controller.report().fallen);
+    let [saved, read] = common::saved_and_read(&controller);
+    assert_eq!(read, saved);
 }
 
 #[test]

@@ -140,7 +140,8 @@ fn numbers_that_are_not_finite_leave_the_state_sound() {
 fn bytes_hold_the_side_of_a_turn() {
     let behind = 0.75 * PI;
     // Far from the origin a target is known to some millimetres only; just ahead of the angle at which a target lies behind there is no side.
-    for (far, target) in [(0.0, PI - 0.1), (0.0, 0.1 - PI), (3e5, PI - 0.1), (0.0, behind - 5e-4), (0.0, 0.3)] {
+    for (far, target) in [(0.0, PI - 0.1), (0.0, 0.1 - PI), (3e5, PI - 0.1), (0.0, behind - 5e-4), (0.0, 0.3)]
+    {
         let mut controller = controller(Some(Steering::default()));
         let mut state = body(0.0, 0.0, 0.0);
         state.bodies.iter_mut().for_each(|body| body.position.x += far);

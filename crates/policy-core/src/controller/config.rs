@@ -23,10 +23,11 @@ pub struct ControllerConfig {
     pub start: NodeId,
     /// How a blend becomes an action.
     pub blend_mode: BlendMode,
-    /// Time over which joint targets pass from one policy to the other when a skill starts or ends, seconds; 0 for a jump.
+    /// Time over which joint targets pass from one policy to the other when a skill starts or ends, seconds, at most 3600; 0 for
+    /// a jump.
     pub handover_secs: f32,
-    /// Time after a skill in which the character stays in the gait that the skill returns to, and turns little, seconds; 0 to go on at
-    /// once.
+    /// Time after a skill in which the character stays in the gait that the skill returns to, and turns little, seconds, at most
+    /// 3600; 0 to go on at once.
     pub settle_secs: f32,
     /// Slow down fast gaits while the target lies far off the heading, the default; `None` to leave turning to the policies.
     pub turn_assist: Option<TurnAssist>,

@@ -17,6 +17,7 @@ use crate::pack::CharacterPack;
 use crate::path::GraphPosition;
 use crate::skill::{Refusal, SkillEnd, SkillProgress};
 use crate::state::CharacterState;
+use crate::state_check::countdown_secs;
 
 /// Longest time that a requested skill stays pending, seconds.
 const LONGEST_PENDING_SECS: f32 = 4.0;
@@ -85,7 +86,7 @@ impl Controller {
         self.set_position(GraphPosition::node(skill.returns_to));
         self.state.fall.reset();
         self.begin_hand_over();
-        self.state.settle_secs = self.config.settle_secs;
+        self.state.settle_secs = countdown_secs(self.config.settle_secs);
         // A character that lies where its time to stand up is over tries again at once.
         let low = fall_height(pack.graph(), self.state.report.position).is_some_and(|h| heights.root < h);
         if self.config.auto_recover && low && pack.recovery() == Some(progress.skill) {
@@ -206,7 +207,7 @@ impl Controller {
         if *handover_secs <= 0.0 {
             return;
         }
-        let before = (*handover_secs / self.config.handover_secs).clamp(0.0, 1.0);
+        let before = (*handover_secs / countdown_secs(self.config.handover_secs)).clamp(0.0, 1.0);
         for (target, from) in targets.iter_mut().zip(handover_from) {
             *target += before * (*from - *target);
         }
@@ -216,7 +217,7 @@ impl Controller {
     fn begin_hand_over(&mut self) {
         if self.config.handover_secs > 0.0 {
             self.state.handover_from.copy_from_slice(&self.state.targets);
-            self.state.handover_secs = self.config.handover_secs;
+            self.state.handover_secs = countdown_secs(self.config.handover_secs);
         }
     }
 }
