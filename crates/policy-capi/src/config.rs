@@ -160,8 +160,14 @@ impl PsConfig {
             )?,
             velocity_secs: not_negative("steering_velocity_secs", self.steering_velocity_secs)?,
         };
+        let held_up_share = finite("give_way_held_up_share", self.give_way_held_up_share)?;
+        if self.give_way != 0 && !(held_up_share > 0.0 && held_up_share < 1.0) {
+            let text =
+                format_args!("expected give_way_held_up_share above 0 and below 1, found {held_up_share}");
+            return Err(fail(PsStatus::BadNumber, text));
+        }
         let give_way = GiveWay {
-            held_up_share: not_negative("give_way_held_up_share", self.give_way_held_up_share)?,
+            held_up_share,
             stop_secs: not_negative("give_way_stop_secs", self.give_way_stop_secs)?,
         };
         Ok(ControllerConfig {

@@ -89,8 +89,8 @@ pub unsafe extern "C" fn ps_state_to_bytes(
     })
 }
 
-/// Reads a state from bytes that were written for the same pack. After an error other than a null pointer or a wrong count it
-/// is the state of a new controller. Does not allocate.
+/// Reads a state from bytes that were written for the same pack. After PS_STATUS_BAD_STATE it is the state of a new
+/// controller; after any other error it is unchanged. Does not allocate.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn ps_state_from_bytes(
     state: Option<&mut PsState>,

@@ -225,6 +225,39 @@ fn bad_packs_files_names_and_indices_are_errors() {
     let config = PsConfig { steering_velocity_secs: -0.1, ..PsConfig::default() };
     assert!(ps_controller_new(Some(&pack), Some(&config)).is_none());
     failed(ps_last_status(), PsStatus::BadNumber, "steering_velocity_secs of at least 0");
+    for share in [0.0, 1.0, 1.5] {
+        let config = PsConfig { give_way: 1, give_way_held_up_share: share, ..PsConfig::default() };
+        assert!(ps_controller_new(Some(&pack), Some(&config)).is_none());
+        failed(ps_last_status(), PsStatus::BadNumber, "give_way_held_up_share above 0 and below 1");
+    }
+}
+
+#[test]
+fn a_state_for_another_skeleton_stays_as_it_was() {
+    let (ours, bytes) = (pack(), common::bytes());
+    let core = policy_core::CharacterPack::from_bytes(&bytes).unwrap();
+    let (mut manifest, tensors) = (core.manifest().clone(), core.tensors().clone());
+    manifest.skeleton.bodies[2].name = "skull".into();
+    manifest.skeleton.joints.iter_mut().filter(|j| j.body == "head").for_each(|j| j.body = "skull".into());
+    manifest.skeleton.roles.head = Some("skull".into());
+    let other = policy_core::CharacterPack::from_parts(manifest, tensors).unwrap();
+    let other = common::load(&other.to_bytes());
+    let mut made = controller(&ours);
+    tick(&mut made, &Body::standing(), &walking(), &mut [0.0; JOINTS]);
+    let mut state = ps_state_new(Some(&ours)).unwrap();
+    assert_eq!(ps_controller_save(Some(&made), Some(&mut state)), PsStatus::Ok);
+    let written = |state: &PsState| {
+        let mut bytes = vec![0; ps_state_byte_len(Some(state))];
+        // SAFETY: as many bytes as said.
+        let status = unsafe { ps_state_to_bytes(Some(state), bytes.as_mut_ptr(), bytes.len()) };
+        assert_eq!(status, PsStatus::Ok);
+        bytes
+    };
+    let before = written(&state);
+    // SAFETY: as many bytes as said.
+    let read = unsafe { ps_state_from_bytes(Some(&mut state), Some(&other), before.as_ptr(), before.len()) };
+    failed(read, PsStatus::OtherSkeleton, "skeleton");
+    assert_eq!(written(&state), before);
 }
 
 #[test]
