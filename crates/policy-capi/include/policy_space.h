@@ -323,10 +323,11 @@ typedef struct PsConfig {
   int32_t assist_rise;
   // Node to start at.
   int32_t start_node;
-  // Time over which joint targets pass from one policy to the other when a skill starts or ends, seconds; 0 for a jump.
+  // Time over which joint targets pass from one policy to the other when a skill starts or ends, seconds, at most 3600; 0 for a
+  // jump.
   float handover_secs;
-  // Time after a skill in which the character stays in the gait that the skill returns to, and turns little, seconds; 0 to go on at
-  // once.
+  // Time after a skill in which the character stays in the gait that the skill returns to, and turns little, seconds, at most
+  // 3600; 0 to go on at once.
   float settle_secs;
   // Not 0: fast gaits slow down and slow ones speed up while the target lies far off the heading.
   int32_t turn_assist;
@@ -352,7 +353,7 @@ typedef struct PsConfig {
   int32_t give_way;
   // Share of its speed towards the target below which it is held up, in (0, 1).
   float give_way_held_up_share;
-  // How long it stands then, seconds; at least 0.
+  // How long it stands then, seconds; 0 to 3600.
   float give_way_stop_secs;
   // Not 0: blend gaits with their variants for rough ground where the ground is uneven.
   int32_t footing;
@@ -595,7 +596,7 @@ PsStatus ps_controller_prepare(struct PsController *controller,
                                size_t capacity);
 
 // The second half of a tick: from the action of the policy, one number for each hinge, to joint targets in radians. Numbers
-// that are not finite count as 0. Does not allocate.
+// that are not finite count as 0. `targets` may be the array of `action`. Does not allocate.
 PsStatus ps_controller_accept(struct PsController *controller,
                               const float *action,
                               size_t action_count,
@@ -648,8 +649,8 @@ PsStatus ps_state_to_bytes(const struct PsState *state,
                            uint8_t *bytes,
                            size_t capacity);
 
-// Reads a state from bytes that were written for the same pack. After an error other than a null pointer or a wrong count it
-// is the state of a new controller. Does not allocate.
+// Reads a state from bytes that were written for the same pack. After PS_STATUS_BAD_STATE it is the state of a new
+// controller; after any other error it is unchanged. Does not allocate.
 PsStatus ps_state_from_bytes(struct PsState *state,
                              const struct PsPack *pack,
                              const uint8_t *bytes,

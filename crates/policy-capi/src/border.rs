@@ -33,26 +33,57 @@ pub(crate) unsafe fn input<'a, T>(
     Ok(unsafe { std::slice::from_raw_parts(pointer, count) })
 }
 
-/// An array with room for at least `needed` entries that is written: the first `needed` of them.
+/// Room for entries that are written, and nothing else yet: it may be an array that is read before that.
+#[derive(Clone, Copy)]
+pub(crate) struct Room<T> {
+    pointer: *mut T,
+    needed: usize,
+}
+
+impl<T> Room<T> {
+    /// The first `needed` entries of an array with room for at least so many.
+    pub(crate) fn checked(
+        what: &str,
+        pointer: *mut T,
+        capacity: usize,
+        needed: usize,
+    ) -> Result<Self, PsStatus> {
+        if capacity < needed {
+            let text = format_args!("expected room for {needed} {what}, found {capacity}");
+            return Err(fail(PsStatus::WrongCount, text));
+        }
+        if needed > 0 {
+            check_pointer(what, pointer)?;
+        }
+        Ok(Self { pointer, needed })
+    }
+
+    /// The entries, to be written.
+    ///
+    /// # Safety
+    /// `pointer` is valid for writes of `capacity` entries while the slice lives, unless no entry is needed, and nothing else that lives
+    /// leads there: slices of [`input`] are read before.
+    pub(crate) unsafe fn slice<'a>(self) -> &'a mut [std::mem::MaybeUninit<T>] {
+        if self.needed == 0 {
+            return &mut [];
+        }
+        // SAFETY: not null; the caller promises the rest, and `needed` is at most what is there. Nothing is read of it.
+        unsafe { std::slice::from_raw_parts_mut(self.pointer.cast(), self.needed) }
+    }
+}
+
+/// An array with room for at least `needed` entries that is written at once: the first `needed` of them.
 ///
 /// # Safety
-/// `pointer` is null, or aligned and valid for writes of `capacity` entries while the slice lives.
+/// That of [`Room::slice`].
 pub(crate) unsafe fn output<'a, T>(
     what: &str,
     pointer: *mut T,
     capacity: usize,
     needed: usize,
 ) -> Result<&'a mut [std::mem::MaybeUninit<T>], PsStatus> {
-    if capacity < needed {
-        let text = format_args!("expected room for {needed} {what}, found {capacity}");
-        return Err(fail(PsStatus::WrongCount, text));
-    }
-    if needed == 0 {
-        return Ok(&mut []);
-    }
-    check_pointer(what, pointer)?;
-    // SAFETY: not null; the caller promises the rest, and `needed` is at most what is there. Nothing is read of it.
-    Ok(unsafe { std::slice::from_raw_parts_mut(pointer.cast(), needed) })
+    // SAFETY: the caller's promise is passed on.
+    Room::checked(what, pointer, capacity, needed).map(|room| unsafe { room.slice() })
 }
 
 /// A text that ends with a zero.

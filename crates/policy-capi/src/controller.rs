@@ -6,7 +6,7 @@ use policy_core::training::MAX_NODES;
 use policy_core::{CharacterState, Controller, GraphPosition, JointTargets, NodeId};
 
 use crate::PS_NONE;
-use crate::border::{finite, id, index, input, output, present};
+use crate::border::{Room, finite, id, index, input, present};
 use crate::command::PsCommand;
 use crate::config::{PsConfig, blend_mode};
 use crate::error::{PsStatus, fail, guard, guard_or};
@@ -61,8 +61,7 @@ pub unsafe extern "C" fn ps_controller_tick(
         let PsController { controller, sensed: state } = present("a controller", controller)?;
         let (sensed, command) = (present("what is sensed", sensed)?, present("a command", command)?);
         let joints = state.joint_velocities.len();
-        // SAFETY: the contract of every function.
-        let targets = unsafe { output("joint targets", targets, capacity, joints) }?;
+        let targets = Room::checked("joint targets", targets, capacity, joints)?;
         let pack = Arc::clone(controller.pack());
         // SAFETY: the contract of every function.
         let command = unsafe { command.checked(&pack) }?;
@@ -70,7 +69,9 @@ pub unsafe extern "C" fn ps_controller_tick(
         // SAFETY: the contract of every function.
         unsafe { sensed.copy_into(pack.skeleton(), state) }?;
         let sound = check(pack.skeleton(), state).inspect_err(|_| state.ground_height = f32::NAN);
-        write(controller.tick(state, &command, dt_secs), targets);
+        let computed: &JointTargets = controller.tick(state, &command, dt_secs);
+        // SAFETY: the contract of every function. All arrays that it reads were read before.
+        write(computed, unsafe { targets.slice() });
         sound
     })
 }
@@ -93,8 +94,7 @@ pub unsafe extern "C" fn ps_controller_prepare(
         let (sensed, command) = (present("what is sensed", sensed)?, present("a command", command)?);
         let pack = Arc::clone(controller.pack());
         let skeleton = pack.skeleton();
-        // SAFETY: the contract of every function.
-        let input = unsafe { output("inputs of a policy", input, capacity, skeleton.policy_input_len()) }?;
+        let input = Room::checked("inputs of a policy", input, capacity, skeleton.policy_input_len())?;
         // SAFETY: the contract of every function.
         let command = unsafe { command.checked(&pack) }?;
         let dt_secs = elapsed(dt_secs)?;
@@ -102,14 +102,15 @@ pub unsafe extern "C" fn ps_controller_prepare(
         unsafe { sensed.copy_into(skeleton, state) }?;
         let sound = check(skeleton, state).inspect_err(|_| state.ground_height = f32::NAN);
         if controller.prepare(state, &command, dt_secs) {
-            write(controller.policy_input(), input);
+            // SAFETY: the contract of every function. All arrays that it reads were read before.
+            write(controller.policy_input(), unsafe { input.slice() });
         }
         sound
     })
 }
 
 /// The second half of a tick: from the action of the policy, one number for each hinge, to joint targets in radians. Numbers
-/// that are not finite count as 0. Does not allocate.
+/// that are not finite count as 0. `targets` may be the array of `action`. Does not allocate.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn ps_controller_accept(
     controller: Option<&mut PsController>,
@@ -123,10 +124,10 @@ pub unsafe extern "C" fn ps_controller_accept(
         let joints = sensed.joint_velocities.len();
         // SAFETY: the contract of every function.
         let action = unsafe { input("numbers of an action", action, action_count, joints) }?;
-        // SAFETY: the contract of every function.
-        let targets = unsafe { output("joint targets", targets, capacity, joints) }?;
+        let targets = Room::checked("joint targets", targets, capacity, joints)?;
         let computed: &JointTargets = controller.accept(action);
-        write(computed, targets);
+        // SAFETY: the contract of every function. The action, which may be in the same array, was read before.
+        write(computed, unsafe { targets.slice() });
         Ok(())
     })
 }

@@ -132,6 +132,10 @@ fn two_halves_make_a_tick() {
     };
     assert_eq!(accepted, PsStatus::Ok);
     assert_eq!(found, expected);
+    let in_place = action.as_mut_ptr();
+    // SAFETY: as many numbers as said.
+    let accepted = unsafe { ps_controller_accept(Some(&mut halves), in_place, JOINTS, in_place, JOINTS) };
+    assert_eq!((accepted, action), (PsStatus::Ok, expected), "the action may be in the array of the targets");
 }
 
 #[test]
