@@ -29,9 +29,9 @@ impl Pad {
     #[must_use]
     pub fn from_state(state: &GamepadState, camera: Heading) -> Self {
         let turns = camera.angle() / core::f32::consts::TAU;
-        // A cast saturates, and makes 0 of NaN.
-        let stick = |value: f32| round(value.clamp(-1.0, 1.0) * 127.0) as i8;
-        let trigger = |value: f32| round(value.clamp(0.0, 1.0) * 255.0) as u8;
+        let finite = |value: f32| if value.is_finite() { value } else { 0.0 };
+        let stick = |value: f32| round(finite(value).clamp(-1.0, 1.0) * 127.0) as i8;
+        let trigger = |value: f32| round(finite(value).clamp(0.0, 1.0) * 255.0) as u8;
         Self {
             left_stick: state.left_stick.map(stick),
             triggers: [trigger(state.left_trigger), trigger(state.right_trigger)],
@@ -120,7 +120,9 @@ mod tests {
             ..GamepadState::default()
         };
         let pad = Pad::from_state(&broken, Heading::FORWARD);
-        assert_eq!((pad.left_stick, pad.triggers, pad.camera), ([0, 127], [255, 0], 0));
+        assert_eq!((pad.left_stick, pad.triggers, pad.camera), ([0, 127], [0, 0], 0));
+        let endless = GamepadState { left_stick: [f32::INFINITY, f32::NEG_INFINITY], ..broken };
+        assert_eq!(Pad::from_state(&endless, Heading::FORWARD).left_stick, [0, 0]);
         assert_eq!(Pad { left_stick: [-128, 0], ..Pad::default() }.state().left_stick, [-1.0, 0.0]);
     }
 }
