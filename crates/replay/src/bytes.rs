@@ -8,12 +8,15 @@ use crate::hash::StateHash;
 use crate::header::{Header, MOST_PLAYERS, MOST_SCENE_BYTES, MOST_TICKS, Replay};
 use crate::runs::Runs;
 
-/// Most bytes of a replay: eight sticks that move in every tick of an hour.
+/// Most bytes of a replay: eight sticks that move in every tick of an hour at 30 Hz.
 pub const MOST_BYTES: usize = 8 << 20;
 
 const MAGIC: [u8; 4] = *b"PSRP";
 const VERSION: u16 = 1;
 const CHECKSUM_LEN: usize = 4;
+
+/// Bytes of a replay of no ticks, but for the name of its scene: the fields before the pads, the last hash, the checksum.
+const FRAME_LEN: usize = 4 + 2 + 2 + 8 + 4 + 1 + 1 + 4 + 8 + CHECKSUM_LEN;
 
 /// The checksum at the end of a replay, of all bytes before it.
 #[must_use]
@@ -43,6 +46,11 @@ impl Reader<'_> {
 }
 
 impl Replay {
+    /// Bytes of one of no ticks.
+    pub(crate) fn empty_len(header: &Header) -> usize {
+        FRAME_LEN + header.scene.len()
+    }
+
     /// Its bytes, as [`Replay::from_bytes`] reads them. Equal replays have equal bytes.
     #[must_use]
     pub fn to_bytes(&self) -> Vec<u8> {

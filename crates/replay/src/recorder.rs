@@ -6,13 +6,12 @@ use crate::header::{Header, MOST_TICKS, Replay};
 use crate::pad::Pad;
 use crate::runs::Runs;
 
-/// Most bytes of one run.
-const RUN_BYTES: usize = 5 + 1 + 4 + 2 + 5;
-
 /// Takes the pads of each tick and the hash of the state after it.
 #[derive(Clone, Debug)]
 pub struct Recorder {
     replay: Replay,
+    /// Bytes of the replay.
+    len: usize,
 }
 
 impl Recorder {
@@ -23,7 +22,8 @@ impl Recorder {
     pub fn new(header: Header) -> Result<Self, ReplayError> {
         header.check()?;
         let runs = vec![Runs::default(); header.players.into()];
-        Ok(Self { replay: Replay { header, ticks: 0, runs, hashes: Vec::new(), last_hash: 0 } })
+        let len = Replay::empty_len(&header);
+        Ok(Self { len, replay: Replay { header, ticks: 0, runs, hashes: Vec::new(), last_hash: 0 } })
     }
 
     /// Adds one tick: the pad of each player, and the hash of the state after it.
@@ -41,16 +41,19 @@ impl Recorder {
         if replay.ticks >= MOST_TICKS {
             return field("ticks", "at most 432000", MOST_TICKS as usize + 1);
         }
-        let runs: usize = replay.runs.iter().map(|runs| runs.0.len() + 1).sum();
-        if runs * RUN_BYTES + 8 * (replay.hashes.len() + 2) + 128 > MOST_BYTES {
-            return field("the pads", "no more changes than fit into a replay", runs);
+        let grown: usize = replay.runs.iter().zip(pads).map(|(runs, &pad)| runs.grows_by(pad)).sum();
+        let is_hashed = (replay.ticks + 1).is_multiple_of(replay.header.hash_every.into());
+        let len = self.len + grown + if is_hashed { 8 } else { 0 };
+        if len > MOST_BYTES {
+            return field("the pads", "no more changes than fit into a replay of 8 MiB", len);
         }
+        self.len = len;
         for (runs, &pad) in replay.runs.iter_mut().zip(pads) {
             runs.push(pad);
         }
         replay.ticks += 1;
         replay.last_hash = hash;
-        if replay.ticks.is_multiple_of(replay.header.hash_every.into()) {
+        if is_hashed {
             replay.hashes.push(hash);
         }
         Ok(())

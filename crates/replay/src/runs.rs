@@ -36,20 +36,20 @@ impl Runs {
         }
     }
 
+    /// Bytes that a pad of one more tick adds.
+    pub(crate) fn grows_by(&self, pad: Pad) -> usize {
+        match self.0.last() {
+            Some(run) if run.pad == pad => varint_len(run.ticks + 1) - varint_len(run.ticks),
+            last => run_len(1, last.map_or(Pad::default(), |run| run.pad), pad),
+        }
+    }
+
     /// Appends its bytes.
     pub(crate) fn write(&self, out: &mut Vec<u8>) {
         let mut last = Pad::default();
         for &Run { ticks, pad } in &self.0 {
             varint(ticks, out);
-            let changed = [
-                (STICK_X, pad.left_stick[0] != last.left_stick[0]),
-                (STICK_Y, pad.left_stick[1] != last.left_stick[1]),
-                (LEFT_TRIGGER, pad.triggers[0] != last.triggers[0]),
-                (RIGHT_TRIGGER, pad.triggers[1] != last.triggers[1]),
-                (CAMERA, pad.camera != last.camera),
-                (BUTTONS, pad.buttons != last.buttons),
-            ];
-            let mask = changed.iter().filter(|(_, differs)| *differs).fold(0, |mask, (bit, _)| mask | bit);
+            let mask = mask(last, pad);
             out.push(mask);
             let bytes = pad.to_bytes();
             for (index, bit) in [STICK_X, STICK_Y, LEFT_TRIGGER, RIGHT_TRIGGER].into_iter().enumerate() {
@@ -104,6 +104,33 @@ impl Runs {
         }
         Ok(runs)
     }
+}
+
+/// Which fields of a pad differ from those of the pad before.
+fn mask(last: Pad, pad: Pad) -> u8 {
+    let changed = [
+        (STICK_X, pad.left_stick[0] != last.left_stick[0]),
+        (STICK_Y, pad.left_stick[1] != last.left_stick[1]),
+        (LEFT_TRIGGER, pad.triggers[0] != last.triggers[0]),
+        (RIGHT_TRIGGER, pad.triggers[1] != last.triggers[1]),
+        (CAMERA, pad.camera != last.camera),
+        (BUTTONS, pad.buttons != last.buttons),
+    ];
+    changed.iter().filter(|(_, differs)| *differs).fold(0, |mask, (bit, _)| mask | bit)
+}
+
+/// Bytes of a run of a pad behind another.
+fn run_len(ticks: u32, last: Pad, pad: Pad) -> usize {
+    let mask = mask(last, pad);
+    let one = (mask & (STICK_X | STICK_Y | LEFT_TRIGGER | RIGHT_TRIGGER)).count_ones() as usize;
+    let camera = if mask & CAMERA != 0 { 2 } else { 0 };
+    let buttons = if mask & BUTTONS != 0 { varint_len(pad.buttons) } else { 0 };
+    varint_len(ticks) + 1 + one + camera + buttons
+}
+
+/// Bytes of a number by [`varint`].
+fn varint_len(value: u32) -> usize {
+    (value.max(1).ilog2() / 7) as usize + 1
 }
 
 /// Seven bits a byte, low ones first; the top bit says that more follow.

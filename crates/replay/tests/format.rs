@@ -152,6 +152,46 @@ fn a_held_stick_takes_few_bytes_and_a_stick_that_moves_fits_a_link() {
 }
 
 #[test]
+fn eight_sticks_that_move_for_an_hour_fit() {
+    let stick = |tick: u32, player: u8| Pad { left_stick: [tick as i8, player as i8], ..Pad::default() };
+    let hour = recorded(8, 30 * 3600, stick);
+    let bytes = hour.to_bytes();
+    assert!(bytes.len() <= MOST_BYTES);
+    assert_eq!(Replay::from_bytes(&bytes).unwrap(), hour);
+}
+
+/// The recorder counts the bytes as they are written, to the last one.
+#[test]
+fn a_recorder_is_full_when_its_bytes_are() {
+    let mut recorder = Recorder::new(header(3)).unwrap();
+    let mut seed = 5u32;
+    let mut pads = [Pad::default(); 3];
+    let error = loop {
+        for pad in &mut pads {
+            seed = seed.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
+            match seed >> 29 {
+                0..=1 => {}
+                2 => pad.left_stick[1] = (seed >> 8) as i8,
+                _ => {
+                    *pad = Pad::from_bytes(std::array::from_fn(|i| (seed >> i) as u8));
+                    pad.buttons >>= seed >> 27;
+                }
+            }
+        }
+        if let Err(error) = recorder.push(&pads, 7) {
+            break error;
+        }
+    };
+    let replay = recorder.finish();
+    assert!(replay.ticks() < MOST_TICKS, "the bytes end first");
+    let bytes = replay.to_bytes();
+    assert_eq!(Replay::from_bytes(&bytes).unwrap(), replay);
+    assert!((MOST_BYTES - 3 * 13 - 8..=MOST_BYTES).contains(&bytes.len()), "{}", bytes.len());
+    let ReplayError::Field { field: "the pads", found, .. } = &error else { panic!("{error}") };
+    assert!(found.parse::<usize>().unwrap() > MOST_BYTES, "{error}");
+}
+
+#[test]
 fn the_seeds_of_the_fuzzer_are_replays() {
     for (file, link) in [
         (
