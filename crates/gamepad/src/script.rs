@@ -118,8 +118,7 @@ impl Script {
             self.buttons.push(at, name, false);
         }
         for &name in &entry.tap.0 {
-            self.buttons.push(at, name, true);
-            self.buttons.push(at + TAP_SECS, name, false);
+            self.buttons.push_tap(at, at + TAP_SECS, name);
         }
     }
 }

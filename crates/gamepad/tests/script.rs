@@ -71,6 +71,28 @@ fn buttons_go_by_edges() {
 }
 
 #[test]
+fn a_tap_does_not_cut_off_what_comes_after_it() {
+    let script = Script::from_ron(
+        "(entries: [
+            (at: 1, tap: [South, East, West]),
+            (at: 1.1, press: [South], tap: [East], release: [West]),
+            (at: 1.12, press: [West]),
+            (at: 2, release: [South, West]),
+        ])",
+    )
+    .unwrap();
+    let held = |time| {
+        let held = script.state_at(time).buttons;
+        [Button::South, Button::East, Button::West].map(|button| held.contains(button))
+    };
+    assert_eq!(held(1.05), [true; 3]);
+    assert_eq!(held(1.11), [true, true, false]);
+    assert_eq!(held(1.2), [true; 3], "the second tap and the presses go on");
+    assert_eq!(held(1.26), [true, false, true]);
+    assert_eq!(held(2.0), [false; 3]);
+}
+
+#[test]
 fn every_tap_is_seen_by_a_30_hz_clock() {
     for offset in 0..100 {
         let at = 1.0 + f64::from(offset) / 1000.0;

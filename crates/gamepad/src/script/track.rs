@@ -43,17 +43,33 @@ impl Track {
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(super) struct ButtonTrack {
     edges: Vec<(f64, Button, bool)>,
+    /// Releases of taps that the next edge of their button may still replace, one for each button.
+    pending: Vec<(f64, Button)>,
     held: Vec<(f64, Buttons)>,
 }
 
 impl ButtonTrack {
+    /// Appends an edge; times are ascending (checked by the parser). A tap of the button that has not ended yet ends in this edge.
     pub(super) fn push(&mut self, at_secs: f64, button: Button, pressed: bool) {
+        if let Some(tap) = self.pending.iter().position(|(_, tapped)| *tapped == button) {
+            let (release_secs, _) = self.pending.swap_remove(tap);
+            if release_secs <= at_secs {
+                self.edges.push((release_secs, button, false));
+            }
+        }
         self.edges.push((at_secs, button, pressed));
+    }
+
+    /// Appends a press and the release after it, at `release_secs`.
+    pub(super) fn push_tap(&mut self, at_secs: f64, release_secs: f64, button: Button) {
+        self.push(at_secs, button, true);
+        self.pending.push((release_secs, button));
     }
 
     /// Sorts the edges (taps release out of order) and accumulates them. Edges at one time keep their order.
     pub(super) fn finish(&mut self) {
         let mut edges = std::mem::take(&mut self.edges);
+        edges.extend(self.pending.drain(..).map(|(release_secs, button)| (release_secs, button, false)));
         edges.sort_by(|a, b| a.0.total_cmp(&b.0));
         let mut held = Buttons::NONE;
         for (at_secs, button, pressed) in edges {
