@@ -14,7 +14,7 @@ use crate::backend::{BackendError, PadBackend};
 use crate::device::{DeviceEvent, DeviceInfo, DeviceKey, Problem, Source};
 use crate::pads::{Bus, MAX_OUTPUT_LEN, PadOutput};
 use crate::recording::RecordingError;
-use crate::{GamepadState, PadReport, PadSession};
+use crate::{Button, PadReport, PadSession};
 
 /// Every pad that is connected, through all back ends.
 pub struct Gamepads {
@@ -25,6 +25,9 @@ pub struct Gamepads {
     pads: Vec<Pad>,
     problems: Vec<(DeviceInfo, Problem)>,
     active: Option<DeviceKey>,
+    pressed: Option<DeviceKey>,
+    /// Recordings that ended because their pads were disconnected, until they are stopped.
+    ended: Vec<(DeviceKey, Result<(), RecordingError>)>,
     now_secs: f64,
 }
 
@@ -39,6 +42,8 @@ impl Gamepads {
             pads: Vec::new(),
             problems: Vec::new(),
             active: None,
+            pressed: None,
+            ended: Vec::new(),
             now_secs: 0.0,
         }
     }
@@ -82,6 +87,8 @@ impl Gamepads {
             DeviceEvent::Connected { device, descriptor } => self.connect(device, descriptor),
             DeviceEvent::Unusable { device, problem } => self.problems.push((device, problem)),
             DeviceEvent::Disconnected(key) => {
+                let recording = self.pad_mut(key).and_then(|pad| pad.disconnect(now_secs));
+                self.ended.extend(recording.map(|result| (key, result)));
                 self.pads.retain(|pad| pad.device.key != key);
                 self.problems.retain(|(device, _)| device.key != key);
             }
@@ -102,15 +109,22 @@ impl Gamepads {
         }
     }
 
-    /// Runs `act` on a pad. A pad whose controls leave neutral becomes the active one.
+    /// Runs `act` on a pad. A pad whose controls leave neutral becomes the active one, and so does one on which another button goes
+    /// down. One that lies with a trigger pulled does not become active again with every report.
     fn with_pad(&mut self, key: DeviceKey, act: impl FnOnce(&mut Pad)) {
         let now_secs = self.now_secs;
         let Some(index) = self.pads.iter().position(|pad| pad.device.key == key) else { return };
         act(&mut self.pads[index]);
-        if self.pads[index].session.report_at(now_secs).state != GamepadState::default()
-            && self.is_shown(index)
-        {
-            self.active = Some(key);
+        let (mut pressed, is_used) = self.pads[index].next_use(now_secs);
+        if !is_used || !self.is_shown(index) {
+            return;
+        }
+        self.active = Some(key);
+        // A pad that lies on its trigger presses no button.
+        pressed.set(Button::LeftTrigger, false);
+        pressed.set(Button::RightTrigger, false);
+        if !pressed.is_empty() {
+            self.pressed = Some(key);
         }
     }
 
@@ -135,6 +149,12 @@ impl Gamepads {
     pub fn active(&self) -> Option<&Pad> {
         let used = self.pads().find(|pad| Some(pad.device.key) == self.active);
         used.or_else(|| self.pads().next())
+    }
+
+    /// The pad on which a button went down last, other than a trigger; `None` before that.
+    #[must_use]
+    pub fn pressed(&self) -> Option<&Pad> {
+        self.pads().find(|pad| Some(pad.device.key) == self.pressed)
     }
 
     /// Report of the active pad, neutral without a pad. This is what a game reads.
@@ -168,13 +188,28 @@ impl Gamepads {
         self.backends.iter_mut().any(|backend| backend.send(key, &report[..len]))
     }
 
-    /// Starts to record a pad into `out`. Replaces a running recording.
+    /// Starts to record a pad into `out`, until [`Gamepads::stop_recording`] or a disconnect. Replaces a running recording.
     ///
     /// # Errors
     /// [`RecordingError::Io`] when the header can't be written.
     pub fn record(&mut self, key: DeviceKey, out: Box<dyn Write + Send>) -> Result<bool, RecordingError> {
         let now_secs = self.now_secs;
         self.pad_mut(key).map_or(Ok(false), |pad| pad.record(out, now_secs).map(|()| true))
+    }
+
+    /// Ends the recording of a pad and flushes it; true when there was one. A recording ends by itself when its pad is disconnected;
+    /// then this returns how it ended, once.
+    ///
+    /// # Errors
+    /// [`RecordingError`] when the output fails or has failed before.
+    pub fn stop_recording(&mut self, key: DeviceKey) -> Result<bool, RecordingError> {
+        if let Some(pad) = self.pad_mut(key) {
+            return pad.stop_recording();
+        }
+        match self.ended.iter().position(|(ended, _)| *ended == key) {
+            Some(index) => self.ended.swap_remove(index).1.map(|()| true),
+            None => Ok(false),
+        }
     }
 
     /// False for a duplicate: a device with the serial number of another (a cable is preferred to Bluetooth), or a

@@ -170,6 +170,12 @@ impl PadSession {
         self.measuring = None;
     }
 
+    /// True while rest positions are measured.
+    #[must_use]
+    pub fn is_measuring(&self) -> bool {
+        self.measuring.is_some()
+    }
+
     /// Result of the last measurement; `None` before the first one ends.
     #[must_use]
     pub fn calibration_outcome(&self) -> Option<Result<(), NotAtRest>> {

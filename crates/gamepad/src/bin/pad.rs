@@ -35,7 +35,7 @@ enum Verb {
     Doctor(DoctorArgs),
     /// Print the udev rules for all known pads.
     Udev,
-    /// Record the first pad on which a button is pressed.
+    /// Record the first pad on which a button is pressed, other than a trigger.
     Record {
         /// File to write.
         file: PathBuf,
@@ -125,13 +125,12 @@ fn record(file: &Path, seconds: f64) -> Result<ExitCode> {
     let mut key = None;
     eprintln!("Press a button on the pad to record it.");
     watch(&mut gamepads, 30.0, |gamepads| {
-        let active = gamepads.active().filter(|pad| pad.session.counts().0 > 0);
-        key = active.map(|pad| (pad.device.key, pad.device.name.clone()));
+        key = gamepads.pressed().map(|pad| (pad.device.key, pad.device.name.clone()));
         Ok(key.is_some())
     })?;
     let Some((key, name)) = key else {
         bail!(
-            "expected a report of a pad within 30 s, found none ({} back ends failed); `pad doctor` lists problems",
+            "expected a button pressed on a pad within 30 s, found none ({} back ends failed); `pad doctor` lists problems",
             errors.len()
         );
     };
@@ -141,11 +140,10 @@ fn record(file: &Path, seconds: f64) -> Result<ExitCode> {
     gamepads.record(key, Box::new(BufWriter::new(out)))?;
     eprintln!("Recording {name} for {seconds} s to {}.", file.display());
     watch(&mut gamepads, seconds, |gamepads| Ok(gamepads.pad_mut(key).is_none()))?;
-    if let Some(pad) = gamepads.pad_mut(key) {
-        pad.stop_recording().with_context(cannot_write)?;
-    } else {
+    if gamepads.pad_mut(key).is_none() {
         eprintln!("The pad was disconnected; the recording ends there.");
     }
+    gamepads.stop_recording(key).with_context(cannot_write)?;
     unfinished.become_whole(file).with_context(cannot_write)?;
     Ok(ExitCode::SUCCESS)
 }

@@ -2,10 +2,11 @@
 
 use std::io::Write;
 
+use crate::calibration::Calibration;
 use crate::device::DeviceInfo;
 use crate::pads::{MAX_OUTPUT_LEN, Model, OutputEncoder, PadOutput};
 use crate::recording::{PadEvent, RecordedPad, Recorder, RecordingError};
-use crate::{GamepadState, PadSession, ReportError};
+use crate::{Buttons, GamepadState, PadSession, ReportError};
 
 /// Most set-up reports kept, for a recording that starts later.
 const MOST_SET_UP: usize = 16;
@@ -21,7 +22,11 @@ pub struct Pad {
     /// Feature reports, and replies with calibrations.
     start_up: Vec<(bool, Box<[u8]>)>,
     last_error: Option<ReportError>,
+    /// After the last event.
+    last_state: GamepadState,
     recorder: Option<(f64, Recorder<Box<dyn Write + Send>>)>,
+    /// The calibration that the recording has; `None` while it leaves the measurement to whoever plays it.
+    recorded: Option<Calibration>,
     recording_error: Option<RecordingError>,
 }
 
@@ -36,7 +41,9 @@ impl Pad {
             encoder,
             start_up: Vec::new(),
             last_error: None,
+            last_state: GamepadState::default(),
             recorder: None,
+            recorded: None,
             recording_error: None,
         }
     }
@@ -85,10 +92,13 @@ impl Pad {
             let event = if *feature { PadEvent::Feature(report) } else { PadEvent::Report(report) };
             recorder.record(0.0, event)?;
         }
-        recorder.record(0.0, PadEvent::Calibration(*self.session.calibration()))?;
         self.recorder = Some((now_secs, recorder));
-        self.recording_error = None;
-        Ok(())
+        (self.recorded, self.recording_error) = (None, None);
+        // While the first rest positions are measured there is no calibration yet.
+        if !self.session.is_measuring() || *self.session.calibration() != Calibration::default() {
+            self.write_calibration(now_secs);
+        }
+        self.recording_error.take().map_or(Ok(()), Err)
     }
 
     pub(super) fn report(&mut self, report: &[u8], now_secs: f64) {
@@ -101,6 +111,7 @@ impl Pad {
             Ok(_) => {}
             Err(error) => self.last_error = Some(error),
         }
+        self.follow_calibration(now_secs);
     }
 
     pub(super) fn feature(&mut self, report: &[u8], now_secs: f64) {
@@ -112,6 +123,25 @@ impl Pad {
     pub(super) fn state(&mut self, state: GamepadState, now_secs: f64) {
         self.write(now_secs, PadEvent::State(state));
         self.session.accept_state(state, now_secs);
+        self.follow_calibration(now_secs);
+    }
+
+    /// Buttons that went down in the last event, and whether the controls left neutral in it or one of the buttons did.
+    pub(super) fn next_use(&mut self, now_secs: f64) -> (Buttons, bool) {
+        let state = self.session.report_at(now_secs).state;
+        let before = std::mem::replace(&mut self.last_state, state);
+        let pressed = state.buttons.pressed_since(before.buttons);
+        let neutral = GamepadState::default();
+        (pressed, !pressed.is_empty() || (before == neutral && state != neutral))
+    }
+
+    /// Writes that the pad was pulled out and ends the recording; `None` when there is none.
+    pub(super) fn disconnect(&mut self, now_secs: f64) -> Option<Result<(), RecordingError>> {
+        self.write(now_secs, PadEvent::Disconnected);
+        match self.stop_recording() {
+            Ok(was_recorded) => was_recorded.then_some(Ok(())),
+            Err(error) => Some(Err(error)),
+        }
     }
 
     pub(super) fn encode_into(
@@ -126,6 +156,20 @@ impl Pad {
         if self.start_up.len() < MOST_SET_UP {
             self.start_up.push((feature, report.into()));
         }
+    }
+
+    /// Writes the calibration once a measurement has ended or another was set.
+    fn follow_calibration(&mut self, now_secs: f64) {
+        let is_new = self.recorded.as_ref() != Some(self.session.calibration());
+        if self.recorder.is_some() && is_new && !self.session.is_measuring() {
+            self.write_calibration(now_secs);
+        }
+    }
+
+    fn write_calibration(&mut self, now_secs: f64) {
+        let calibration = *self.session.calibration();
+        self.write(now_secs, PadEvent::Calibration(calibration));
+        self.recorded = Some(calibration);
     }
 
     /// Ends a recording that fails; [`Pad::stop_recording`] returns the error.
