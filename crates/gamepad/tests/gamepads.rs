@@ -261,7 +261,7 @@ fn a_recording_that_starts_while_the_pad_is_measured_replays_what_was_live() {
     recorded_early(|_| false);
     recorded_early(|time_secs| time_secs > 0.3);
     // Held until the measurement of the pad has failed; one that began with the recording would not.
-    recorded_early(|time_secs| time_secs < 0.052 || time_secs > 1.0);
+    recorded_early(|time_secs| !(0.052..=1.0).contains(&time_secs));
 }
 
 #[test]

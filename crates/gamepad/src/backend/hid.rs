@@ -1,16 +1,19 @@
 //! Pads through hidapi. One thread searches for devices once a second; each open device has a reader thread.
 
+mod queue;
 mod reader;
 
 use std::collections::{BTreeMap, HashSet};
 use std::ffi::CString;
 use std::sync::atomic::{AtomicBool, Ordering};
-use std::sync::mpsc::{Receiver, Sender, channel};
+use std::sync::mpsc::Sender;
 use std::sync::{Arc, Mutex, PoisonError};
 use std::thread::JoinHandle;
 use std::time::{Duration, Instant};
 
 use hidapi::{BusType, HidApi};
+
+use queue::Queue;
 
 use super::{BackendError, PadBackend, new_key};
 use crate::device::{DeviceEvent, DeviceInfo, DeviceKey, Problem, Source};
@@ -26,7 +29,7 @@ type Outputs = Arc<Mutex<BTreeMap<DeviceKey, Sender<Box<[u8]>>>>>;
 /// Reads pads through hidapi until dropped.
 #[derive(Debug)]
 pub struct HidBackend {
-    events: Receiver<Timed>,
+    events: Queue,
     outputs: Outputs,
     stop: Arc<AtomicBool>,
     scanner: Option<JoinHandle<()>>,
@@ -39,12 +42,12 @@ impl HidBackend {
     /// [`BackendError`] when hidapi or the thread can't start.
     pub fn start() -> Result<Self, BackendError> {
         let api = HidApi::new().map_err(|error| BackendError::Hid { message: error.to_string() })?;
-        let (sender, events) = channel();
+        let events = Queue::default();
         let outputs = Outputs::default();
         let stop = Arc::new(AtomicBool::new(false));
         let mut scanner = Scanner {
             api,
-            events: sender,
+            events: events.clone(),
             outputs: Arc::clone(&outputs),
             stop: Arc::clone(&stop),
             open: BTreeMap::new(),
@@ -56,7 +59,7 @@ impl HidBackend {
 
 impl PadBackend for HidBackend {
     fn poll_into(&mut self, events: &mut Vec<Timed>) {
-        events.extend(self.events.try_iter());
+        self.events.drain_into(events);
     }
 
     fn send(&mut self, key: DeviceKey, report: &[u8]) -> bool {
@@ -83,7 +86,7 @@ enum Known {
 
 struct Scanner {
     api: HidApi,
-    events: Sender<Timed>,
+    events: Queue,
     outputs: Outputs,
     stop: Arc<AtomicBool>,
     open: BTreeMap<CString, Known>,
@@ -129,7 +132,7 @@ impl Scanner {
             Known::Unusable(key) => {
                 let stays = present.contains(path);
                 if !stays {
-                    let _ = events.send((Instant::now(), DeviceEvent::Disconnected(*key)));
+                    events.push((Instant::now(), DeviceEvent::Disconnected(*key)));
                 }
                 stays
             }
@@ -145,7 +148,7 @@ impl Scanner {
         let known = match self.api.open_path(&path) {
             Ok(opened) => {
                 if let Some(key) = before {
-                    let _ = self.events.send((Instant::now(), DeviceEvent::Disconnected(key)));
+                    self.events.push((Instant::now(), DeviceEvent::Disconnected(key)));
                 }
                 let reader = reader::Reader::new(
                     opened,
@@ -163,7 +166,7 @@ impl Scanner {
             Err(error) => {
                 let key = device.key;
                 let problem = open_problem(&device, &error);
-                let _ = self.events.send((Instant::now(), DeviceEvent::Unusable { device, problem }));
+                self.events.push((Instant::now(), DeviceEvent::Unusable { device, problem }));
                 Known::Unusable(key)
             }
         };

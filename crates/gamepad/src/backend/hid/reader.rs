@@ -2,13 +2,14 @@
 
 use std::collections::VecDeque;
 use std::sync::atomic::{AtomicBool, Ordering};
-use std::sync::mpsc::{Receiver, Sender, channel};
+use std::sync::mpsc::{Receiver, channel};
 use std::sync::{Arc, PoisonError};
 use std::time::{Duration, Instant};
 
 use hidapi::HidDevice;
 
-use super::{Outputs, Timed};
+use super::Outputs;
+use super::queue::Queue;
 use crate::descriptor::MAX_DESCRIPTOR_BYTES;
 use crate::device::{DeviceEvent, DeviceInfo};
 use crate::pads::{Model, Request};
@@ -23,7 +24,7 @@ const REPORT_BYTES: usize = 1024;
 pub(super) struct Reader {
     opened: HidDevice,
     device: DeviceInfo,
-    events: Sender<Timed>,
+    events: Queue,
     outputs: Outputs,
     stop: Arc<AtomicBool>,
 }
@@ -32,7 +33,7 @@ impl Reader {
     pub(super) fn new(
         opened: HidDevice,
         device: DeviceInfo,
-        events: Sender<Timed>,
+        events: Queue,
         outputs: Outputs,
         stop: Arc<AtomicBool>,
     ) -> Self {
@@ -94,8 +95,7 @@ impl Reader {
         }
     }
 
-    /// The channel is closed only while the back end is dropped; `stop` is set then.
     fn tell(&self, event: DeviceEvent) {
-        let _ = self.events.send((Instant::now(), event));
+        self.events.push((Instant::now(), event));
     }
 }
