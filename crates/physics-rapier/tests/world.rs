@@ -208,3 +208,17 @@ fn a_stack_of_crates_rests_on_the_ground() {
         assert!((0.001..0.015).contains(&sunk), "crate {floor}: {sunk} m");
     }
 }
+
+/// Trap: with Rapier's prediction distance of 20 mm a contact exists before the shapes touch, and what lands stops rigidly at the surface.
+#[test]
+fn what_lands_sinks_into_the_ground_before_it_stops() {
+    let mut world = World::new(&humanoid());
+    world.add_prop(&Prop::cube(0.4, 20.0), &Motion::at(Vec3::new(0.0, 0.0, 0.3))).unwrap();
+    let mut deepest = 0.0_f32;
+    for _ in 0..15 {
+        step(&mut world, 1);
+        deepest = deepest.max(0.2 - at(&world, 0).z);
+    }
+    println!("deepest {deepest} m");
+    assert!(deepest > 0.006, "{deepest} m");
+}
