@@ -54,7 +54,7 @@ at('copy').onclick = async () => {
   const url = new URL(location.href);
   url.search = '';
   url.hash = `replay=${link}`;
-  try { await navigator.clipboard.writeText(url.href); note('The link is in the clipboard.'); } catch { location.hash = url.hash; note('The link is in the address bar.'); }
+  try { await navigator.clipboard.writeText(url.href); note('The link is in the clipboard.'); } catch { history.replaceState(null, '', url.href); note('The link is in the address bar.'); }
   canvas.focus();
 };
 at('save').onclick = () => {
