@@ -5,10 +5,12 @@ const held = new Set();
 const tapped = new Set();
 addEventListener('keydown', (event) => {
   if (event.ctrlKey || event.metaKey || event.altKey) return;
+  // A control that has the focus keeps its keys.
+  if (event.target.closest?.('input,select,button')) return;
   held.add(event.code);
   tapped.add(event.code);
   if (event.code.startsWith('Arrow') || event.code === 'Space') event.preventDefault();
-  if (event.repeat || event.target instanceof HTMLInputElement) return;
+  if (event.repeat) return;
   use(0);
   if (event.code === 'KeyR') restart(false);
   if (event.code === 'KeyP') pause(!paused);
