@@ -9,10 +9,9 @@ use crate::app::{App, Quality, Record};
 use crate::dropped::word_about;
 use crate::gpu::{Gpu, GpuError};
 use crate::overlay::{Overlay, Prepared};
-use crate::recorder::{self, Kind, Recorder};
+use crate::recorder::{self, Kind, Recorder, RecorderError};
 use crate::render::{Appearance, OffScreen, Part, RenderConfig, Renderer, Scene};
 use crate::scene_setup::ground_grid;
-use crate::text::counted;
 
 /// Folder of recordings, in the present one.
 const FOLDER: &str = "policy-space-recordings";
@@ -56,7 +55,7 @@ impl FrameComposer {
         appearance: Appearance,
     ) -> Self {
         let context = egui::Context::default();
-        context.set_visuals(egui::Visuals::dark());
+        context.set_theme(egui::Theme::Dark);
         Self {
             gpu: gpu.clone(),
             format,
@@ -83,7 +82,7 @@ impl FrameComposer {
         let start = Instant::now();
         let output = self.context.run_ui(input, |ui| app.ui(ui, around));
         app.plots.ui.push(start.elapsed().as_secs_f32() * 1e3);
-        if let Some(path) = app.dropped.take() {
+        for path in std::mem::take(&mut app.dropped) {
             self.open_dropped(app, &path);
         }
         output
@@ -220,7 +219,7 @@ impl FrameComposer {
                 let saved = self.capture(app, size, Some(prepared)).map_err(|e| e.to_string());
                 let saved = saved.and_then(|p| recorder::save(&p, &path).map_err(|e| e.to_string()));
                 match saved {
-                    Ok(()) => app.toasts.note(format!("wrote {}", path.display())),
+                    Ok(()) => app.toasts.note(format!("Saved {}", path.display())),
                     Err(error) => app.toasts.error(error),
                 }
             }
@@ -263,10 +262,14 @@ impl FrameComposer {
         for recorder in self.closing.extract_if(.., |recorder| recorder.is_finished()) {
             let path = recorder.path().display().to_string();
             match recorder.finish() {
-                Ok(0) => app.toasts.note(format!("wrote {path}")),
+                Ok(0) => app.toasts.note(format!("Saved {path}")),
                 Ok(dropped) => app.toasts.error(format!(
-                    "wrote {path} without {} that came too fast",
-                    counted(dropped as u64, "picture")
+                    "Saved {path}; {} dropped because the disk was too slow.",
+                    if dropped == 1 {
+                        "1 picture was".to_owned()
+                    } else {
+                        format!("{dropped} pictures were")
+                    }
                 )),
                 Err(error) => app.toasts.error(error.to_string()),
             }
@@ -280,11 +283,13 @@ impl FrameComposer {
     }
 
     /// Ends recordings that still run, and waits until they are written.
-    pub fn finish(self) {
-        for recorder in self.recorder.map(|(recorder, ..)| recorder).into_iter().chain(self.closing) {
-            // The window is gone: there is no place left for a message.
-            let _ = recorder.finish();
-        }
+    ///
+    /// # Errors
+    /// The first of those that could not be written; the others are written all the same.
+    pub fn finish(self) -> Result<(), RecorderError> {
+        let open = self.recorder.map(|(recorder, ..)| recorder).into_iter();
+        let finished: Vec<_> = open.chain(self.closing).map(Recorder::finish).collect();
+        finished.into_iter().find_map(Result::err).map_or(Ok(()), Err)
     }
 }
 

@@ -45,9 +45,17 @@ pub enum RecorderError {
         source: png::EncodingError,
     },
     /// ffmpeg ended early.
-    #[error("ffmpeg failed on {}", path.display())]
+    #[error("ffmpeg failed on {}: {message}", path.display())]
     Ffmpeg {
         /// The film.
+        path: PathBuf,
+        /// What it said.
+        message: String,
+    },
+    /// The thread that writes has panicked.
+    #[error("{} was not written: the recorder stopped", path.display())]
+    Stopped {
+        /// The file.
         path: PathBuf,
     },
 }
@@ -154,7 +162,8 @@ impl Recorder {
         self.close();
         match self.thread.take().map(JoinHandle::join) {
             Some(Ok(result)) => result.map(|()| self.dropped),
-            _ => Ok(self.dropped),
+            Some(Err(_)) => Err(RecorderError::Stopped { path: self.path }),
+            None => Ok(self.dropped),
         }
     }
 }

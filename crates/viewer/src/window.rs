@@ -10,12 +10,13 @@ use winit::event::WindowEvent;
 use winit::event_loop::{ActiveEventLoop, ControlFlow, EventLoop};
 use winit::window::{Window, WindowId};
 
-use crate::app::{App, KeptLayout};
+use crate::app::{App, KeptLayout, ViewerCommand};
 use crate::cli::pad_input::PadInput;
 use crate::cli::{Demo, replay_files};
 use crate::frame_composer::FrameComposer;
 use crate::gpu::{Gpu, GpuError};
 use crate::pads::Pads;
+use crate::recorder::RecorderError;
 use crate::render::Appearance;
 use crate::signals;
 use crate::sound::Speaker;
@@ -23,18 +24,19 @@ use crate::sound::Speaker;
 /// A device that is lost twice within this time will be lost again.
 const LOSSES_APART: Duration = Duration::from_secs(10);
 
-/// Least size of the window, pixels: the bar, one column of panels and a view beside it.
+/// Least size of the window, points: the bar, one column of panels and a view beside it.
 const LEAST_SIZE: [u32; 2] = [800, 500];
 
 /// Runs the demo until its window is closed.
 ///
 /// # Errors
 /// When there is no display or nothing to draw with.
-pub fn run(demo: &Demo, app: App, appearance: Appearance, layout: Option<PathBuf>) -> anyhow::Result<()> {
+pub fn run(demo: &Demo, mut app: App, appearance: Appearance, layout: Option<PathBuf>) -> anyhow::Result<()> {
     let events = EventLoop::new().context("no display: set DISPLAY or WAYLAND_DISPLAY, or use --headless")?;
     events.set_control_flow(ControlFlow::Poll);
     let scripted = Scripted::load(demo)?;
     let pads = if demo.no_pad || scripted.is_some() { None } else { Some(Pads::start()) };
+    app.is_scripted = scripted.is_some();
     let mut host = Host {
         pads,
         scripted,
@@ -48,15 +50,15 @@ pub fn run(demo: &Demo, app: App, appearance: Appearance, layout: Option<PathBuf
         lost: None,
         failed: None,
     };
-    events.run_app(&mut host)?;
-    if let Some(open) = host.window {
-        open.composer.finish();
-    }
-    replay_files::end(demo, &host.app)?;
-    if let Some(kept) = &mut host.layout {
-        kept.keep(&host.app.layout)?;
-    }
-    host.failed.map_or(Ok(()), Err)
+    let ran = events.run_app(&mut host).map_err(anyhow::Error::from);
+    // Everything is written that can be; the first error is told.
+    let films = host.window.map_or(Ok(()), |open| open.composer.finish());
+    let replay = replay_files::end(demo, &host.app);
+    let layout = host.layout.map_or(Ok(()), |mut kept| kept.keep(&host.app.layout));
+    ran.and(host.failed.map_or(Ok(()), Err))
+        .and(films.map_err(Into::into))
+        .and(replay)
+        .and(layout.map_err(Into::into))
 }
 
 /// Pads that the command line gives instead of devices, in the time of the world.
@@ -106,10 +108,13 @@ impl Host {
             return Err(GpuError::LostAgain { adapter, seconds: since.as_secs_f32(), reason }.into());
         }
         self.lost = Some(Instant::now());
-        let (window, appearance) = open.close();
+        let (window, appearance, films) = open.close();
+        if let Err(error) = films {
+            self.app.toasts.error(error.to_string());
+        }
         (self.app.ground_changed, self.app.recording) = (true, None);
         self.window = Some(OpenWindow::on(window, appearance, &mut self.app)?);
-        self.app.toasts.error(format!("The device of {adapter} was lost and opened anew: {reason}"));
+        self.app.toasts.error(format!("The graphics device ({adapter}) failed and was restarted: {reason}"));
         Ok(())
     }
 }
@@ -149,10 +154,12 @@ impl ApplicationHandler for Host {
         match event {
             WindowEvent::CloseRequested => events.exit(),
             WindowEvent::Resized(size) => open.resize([size.width, size.height]),
-            WindowEvent::DroppedFile(path) => self.app.dropped = Some(path),
+            WindowEvent::DroppedFile(path) => self.app.dropped.push(path),
             WindowEvent::RedrawRequested => {
-                if let Some(pads) = &mut self.pads {
-                    pads.poll(&mut self.app.pad);
+                if let Some(pads) = &mut self.pads
+                    && pads.poll(&mut self.app.pad, self.app.sim.has_second_character())
+                {
+                    self.app.apply(ViewerCommand::Pause(!self.app.clock.paused));
                 }
                 if let Some(scripted) = &mut self.scripted {
                     scripted.poll(&mut self.app);
@@ -189,8 +196,8 @@ impl OpenWindow {
         app: &mut App,
     ) -> anyhow::Result<Self> {
         // Who asks for a smaller window gets it.
-        let least = winit::dpi::PhysicalSize::new(size[0].min(LEAST_SIZE[0]), size[1].min(LEAST_SIZE[1]));
-        let size = winit::dpi::PhysicalSize::new(size[0], size[1]);
+        let least = winit::dpi::LogicalSize::new(size[0].min(LEAST_SIZE[0]), size[1].min(LEAST_SIZE[1]));
+        let size = winit::dpi::LogicalSize::new(size[0], size[1]);
         let attributes = Window::default_attributes()
             .with_title("Policy Space")
             .with_inner_size(size)
@@ -203,8 +210,9 @@ impl OpenWindow {
     fn on(window: Arc<Window>, appearance: Appearance, app: &mut App) -> anyhow::Result<Self> {
         let (gpu, surface, adapter) = Gpu::for_window(Arc::clone(&window))?;
         let size = window.inner_size();
+        let [width, height] = drawable([size.width, size.height], &gpu);
         let mut configuration = surface
-            .get_default_config(&adapter, size.width.max(1), size.height.max(1))
+            .get_default_config(&adapter, width, height)
             .context("the adapter cannot draw into the window")?;
         let formats = surface.get_capabilities(&adapter).formats;
         if let Some(plain) = formats.iter().find(|f| !f.is_srgb()) {
@@ -228,18 +236,19 @@ impl OpenWindow {
         Ok(Self { window, surface, configuration, gpu, composer, egui, last: now, traced: now })
     }
 
-    /// Ends recordings and gives surface and device up; returns what outlives them.
-    fn close(self) -> (Arc<Window>, Appearance) {
+    /// Ends recordings and gives surface and device up; returns what outlives them, and what became of
+    /// the recordings.
+    fn close(self) -> (Arc<Window>, Appearance, Result<(), RecorderError>) {
         let appearance = self.composer.appearance().clone();
-        self.composer.finish();
-        (self.window, appearance)
+        let films = self.composer.finish();
+        (self.window, appearance, films)
     }
 
     fn resize(&mut self, size: [u32; 2]) {
         if size.contains(&0) {
             return;
         }
-        (self.configuration.width, self.configuration.height) = (size[0], size[1]);
+        [self.configuration.width, self.configuration.height] = drawable(size, &self.gpu);
         self.surface.configure(&self.gpu.device, &self.configuration);
     }
 
@@ -274,10 +283,16 @@ impl OpenWindow {
             return;
         };
         let view = texture.texture.create_view(&wgpu::TextureViewDescriptor::default());
+        let start = Instant::now();
         self.composer.draw(app, output, &view, size);
+        app.plots.draw.push(start.elapsed().as_secs_f32() * 1e3);
         self.window.pre_present_notify();
         self.gpu.queue.present(texture);
-        let drawn = now.elapsed().as_secs_f32() * 1e3;
-        app.plots.draw.push(drawn);
     }
+}
+
+/// The size of a picture for a window of `size` pixels: at least one pixel, and no more than the adapter can draw.
+fn drawable(size: [u32; 2], gpu: &Gpu) -> [u32; 2] {
+    let most = gpu.device.limits().max_texture_dimension_2d;
+    size.map(|side| side.clamp(1, most))
 }

@@ -115,7 +115,7 @@ fn a_dropped_pack_is_drawn_as_what_it_is() {
     let mut app = App::new(simulation(), PanelLayout::default());
     let (looks, _) = appearance::of_pack(app.sim.pack(), app.sim.model());
     let mut composer = FrameComposer::new(&gpu, OffScreen::FORMAT, looks);
-    for dropped in [None, Some(path)] {
+    for dropped in [vec![], vec![path]] {
         app.dropped = dropped;
         let output = composer.panels(&mut app, egui::RawInput::default(), 0.7);
         composer.picture(&mut app, output, [160, 120], false).unwrap();
@@ -134,7 +134,7 @@ fn a_dropped_mesh_is_drawn_and_the_demo_says_so() {
     let bare = viewer::render::Appearance::new(app.sim.pack().skeleton(), None);
     let mut composer = FrameComposer::new(&gpu, OffScreen::FORMAT, bare);
     app.has_mesh = false;
-    app.dropped = Some(path);
+    app.dropped = vec![path];
     let output = composer.panels(&mut app, egui::RawInput::default(), 0.7);
     composer.picture(&mut app, output, [160, 120], false).unwrap();
     assert!(

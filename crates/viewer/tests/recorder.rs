@@ -96,3 +96,19 @@ fn an_animation_shows_each_picture_as_long_as_the_demo_did() {
         .collect();
     assert_eq!(shown, [[10, 30], [2, 30], [1, 30], [1, 30]]);
 }
+
+#[test]
+fn a_film_that_cannot_be_written_is_an_error_with_the_words_of_ffmpeg() {
+    if Kind::film() != Kind::Mp4 {
+        eprintln!("skipped: ffmpeg is not installed");
+        return;
+    }
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("film.mp4");
+    // A film of no width: ffmpeg refuses it.
+    let mut recorder = Recorder::start(Kind::Mp4, path.clone(), [0, 0], 10);
+    recorder.take(RgbaImage::new(0, 0), 0);
+    let said = recorder.finish().unwrap_err().to_string();
+    assert!(said.starts_with("ffmpeg failed on") && said.len() > path.as_os_str().len() + 25, "{said}");
+    assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 0, "no part is left");
+}

@@ -60,7 +60,9 @@ pub fn begin(demo: &Demo, replay: Option<&Replay>, app: &mut App) -> anyhow::Res
 /// # Errors
 /// When the state differed from a replay's, or the file can't be written.
 pub fn end(demo: &Demo, app: &App) -> anyhow::Result<()> {
-    if let (Some(path), Some(replay)) = (&demo.record_replay, app.replaying.recorded()) {
+    // A run that ended before its first tick has recorded nothing: a file of that name stays as it is.
+    let recorded = app.replaying.recorded().filter(|replay| replay.ticks() > 0);
+    if let (Some(path), Some(replay)) = (&demo.record_replay, recorded) {
         write(path, replay)?;
     }
     if let Some(stopped) = &app.replay_stopped {
@@ -71,4 +73,29 @@ pub fn end(demo: &Demo, app: &App) -> anyhow::Result<()> {
 
 fn write(path: &Path, replay: &Replay) -> anyhow::Result<()> {
     files::write(path, &replay.to_bytes()).with_context(|| format!("cannot write {}", path.display()))
+}
+
+#[cfg(test)]
+mod tests {
+    use clap::Parser as _;
+
+    use super::*;
+    use crate::cli::Cli;
+    use crate::cli::open::open;
+
+    #[test]
+    fn a_run_without_a_tick_leaves_an_earlier_recording_alone() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("walk.replay");
+        std::fs::write(&path, "an earlier one").unwrap();
+        let line = ["policy-space", "--headless", "--no-layout", "--record-replay", path.to_str().unwrap()];
+        let demo = Cli::try_parse_from(line).unwrap().demo;
+        let mut app = open(&demo).unwrap().app;
+        begin(&demo, None, &mut app).unwrap();
+        end(&demo, &app).unwrap();
+        assert_eq!(std::fs::read_to_string(&path).unwrap(), "an earlier one");
+        app.tick();
+        end(&demo, &app).unwrap();
+        assert_eq!(Replay::from_bytes(&std::fs::read(&path).unwrap()).unwrap().ticks(), 1);
+    }
 }

@@ -1,14 +1,17 @@
 //! Writes the pictures of a recording: numbered files, a film through ffmpeg, an animation.
 
-use std::io::Write as _;
+use std::io::{self, Read, Write};
 use std::path::{Path, PathBuf};
-use std::process::{Child, Command, Stdio};
+use std::process::{Command, Stdio};
 use std::sync::mpsc::Receiver;
 
 use super::{Frame, RecorderError, folder_at, save};
 
 /// Longest time that one picture is shown, in pictures of the film: half a minute.
 const LONGEST_SHOWN: u32 = 900;
+
+/// Lines of a program's last words that are told.
+const SAID_LINES: usize = 3;
 
 /// Writes numbered pictures; returns when each of them is shown.
 pub(super) fn sequence(folder: &Path, frames: &Receiver<Frame>) -> Result<Vec<u32>, RecorderError> {
@@ -33,7 +36,7 @@ pub(super) fn mp4(
     let file = |source| RecorderError::File { path: path.to_owned(), source };
     folder_at(path.parent().unwrap_or(Path::new(".")))?;
     let unfinished = Unfinished(path.with_extension(format!("{}.partial", std::process::id())));
-    let mut ffmpeg: Child = Command::new("ffmpeg")
+    let mut ffmpeg = Command::new("ffmpeg")
         .args(["-y", "-loglevel", "error", "-f", "rawvideo", "-pix_fmt", "rgba"])
         .args(["-s", &format!("{width}x{height}"), "-r", &fps.to_string(), "-i", "-"])
         // H.264 wants even sizes.
@@ -41,27 +44,44 @@ pub(super) fn mp4(
         .arg(&unfinished.0)
         .stdin(Stdio::piped())
         .stdout(Stdio::null())
-        .stderr(Stdio::null())
+        .stderr(Stdio::piped())
         .spawn()
         .map_err(file)?;
-    if let Some(mut pipe) = ffmpeg.stdin.take() {
-        let mut shown: Option<Frame> = None;
-        for next in frames {
-            if let Some((picture, since)) = shown.take() {
-                for _ in 0..next.1.saturating_sub(since).clamp(1, LONGEST_SHOWN) {
-                    pipe.write_all(picture.as_raw()).map_err(file)?;
-                }
+    // What it says is read while it runs: a full pipe would stop it.
+    let (pipe, said) = (ffmpeg.stdin.take(), ffmpeg.stderr.take());
+    let said = std::thread::spawn(move || said.map(said_by).unwrap_or_default());
+    let fed = pipe.map_or(Ok(()), |pipe| feed(pipe, frames));
+    let ended = ffmpeg.wait().map_err(file)?;
+    let message = said.join().unwrap_or_default();
+    if !ended.success() {
+        let message = if message.is_empty() { ended.to_string() } else { message };
+        return Err(RecorderError::Ffmpeg { path: path.to_owned(), message });
+    }
+    fed.and_then(|()| std::fs::rename(&unfinished.0, path)).map_err(file)
+}
+
+/// Writes every picture as often as it is shown; the pipe is closed at the end.
+fn feed(mut pipe: impl Write, frames: &Receiver<Frame>) -> io::Result<()> {
+    let mut shown: Option<Frame> = None;
+    for next in frames {
+        if let Some((picture, since)) = shown.take() {
+            for _ in 0..next.1.saturating_sub(since).clamp(1, LONGEST_SHOWN) {
+                pipe.write_all(picture.as_raw())?;
             }
-            shown = Some(next);
         }
-        if let Some((picture, _)) = shown {
-            pipe.write_all(picture.as_raw()).map_err(file)?;
-        }
+        shown = Some(next);
     }
-    match ffmpeg.wait() {
-        Ok(status) if status.success() => std::fs::rename(&unfinished.0, path).map_err(file),
-        _ => Err(RecorderError::Ffmpeg { path: path.to_owned() }),
-    }
+    shown.map_or(Ok(()), |(picture, _)| pipe.write_all(picture.as_raw()))
+}
+
+/// The end of what a program says, in one line.
+fn said_by(mut from: impl Read) -> String {
+    let mut bytes = Vec::new();
+    // What was read before an error is worth as much.
+    let _ = from.read_to_end(&mut bytes);
+    let text = String::from_utf8_lossy(&bytes);
+    let lines: Vec<&str> = text.lines().map(str::trim).filter(|line| !line.is_empty()).collect();
+    lines[lines.len().saturating_sub(SAID_LINES)..].join("; ")
 }
 
 /// A film on its way, beside its file; removed when it does not get there.
