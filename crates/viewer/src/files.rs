@@ -3,7 +3,7 @@
 
 use std::fs::{self, File};
 use std::io::{self, Write as _};
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use ::files::write_atomically;
 pub use ::files::{ReadError, check_regular, read};
@@ -25,6 +25,20 @@ pub fn write(path: &Path, bytes: &[u8]) -> io::Result<()> {
     write_atomically(&path, bytes)
 }
 
+/// Copies a file that can't be read as what it should be to a name ending in `.bad` beside it, before it is replaced; returns that name. An
+/// earlier copy is overwritten.
+///
+/// # Errors
+/// When it is no regular file or can't be copied.
+pub fn keep_aside(path: &Path) -> io::Result<PathBuf> {
+    check_regular(path).map_err(io::Error::other)?;
+    let mut name = path.as_os_str().to_owned();
+    name.push(".bad");
+    let aside = PathBuf::from(name);
+    fs::copy(path, &aside)?;
+    Ok(aside)
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -40,5 +54,19 @@ mod tests {
         // What can't be replaced stays, and nothing is left beside it.
         assert!(write(&path.join("c"), b"three").is_err());
         assert_eq!(fs::read(&path).unwrap(), b"two");
+    }
+
+    #[test]
+    fn a_file_is_kept_aside_under_another_name() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("layout.ron");
+        assert!(keep_aside(&path).is_err() && keep_aside(folder.path()).is_err());
+        fs::write(&path, "nonsense").unwrap();
+        let aside = keep_aside(&path).unwrap();
+        assert_eq!(aside, folder.path().join("layout.ron.bad"));
+        assert_eq!(
+            (fs::read(&path).unwrap(), fs::read(&aside).unwrap()),
+            (b"nonsense".into(), b"nonsense".into())
+        );
     }
 }

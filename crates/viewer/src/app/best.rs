@@ -6,6 +6,8 @@ use super::App;
 use playground::RaceEvent;
 
 use crate::best_time::BestTime;
+use crate::files;
+use crate::replays::Replaying;
 use crate::sound::Sound;
 
 /// From one bell to the next, seconds.
@@ -46,8 +48,13 @@ fn bells(events: &[RaceEvent], is_best: bool) -> Option<&'static [f32]> {
 }
 
 impl App {
-    /// Takes what happened in a shared world during a tick: a new best time is kept at once, and what diverged is told. The tour runs for no
-    /// best time.
+    /// True while what happens on the course is the player's own doing: no tour, script or replay steers.
+    pub(super) fn is_own_run(&self) -> bool {
+        !self.tour.is_playing() && !self.is_scripted && !matches!(self.replaying, Replaying::Playing(_))
+    }
+
+    /// Takes what happened in a shared world during a tick: a new best time is kept at once, and what diverged is told. Only
+    /// the player's own runs count.
     pub(super) fn follow_race(&mut self) {
         let tick_secs = self.sim.tick_secs();
         let Some(shared) = self.sim.shared_mut() else { return };
@@ -64,11 +71,21 @@ impl App {
         {
             match BestTime::load(path) {
                 Ok(time) => self.best.time = time,
-                Err(error) => self.toasts.error(error.to_string()),
+                // A better time replaces the file: what it holds is copied aside, or nothing is written.
+                Err(error) => match files::keep_aside(path) {
+                    Ok(aside) => {
+                        let aside = aside.display();
+                        self.toasts.error(format!("{error}. The old file is kept as {aside}."));
+                    }
+                    Err(_) => {
+                        self.best.settings = None;
+                        self.toasts.error(format!("{error}. Best times are not saved in this run."));
+                    }
+                },
             }
         }
-        let is_best =
-            !self.tour.is_playing() && events.contains(&RaceEvent::Finished) && run.beats(self.best.time);
+        let file = file.filter(|_| self.best.settings.is_some());
+        let is_best = self.is_own_run() && events.contains(&RaceEvent::Finished) && run.beats(self.best.time);
         if let Some(pitches) = bells(&events, is_best) {
             self.ear.add(Sound::bells(pitches, BELLS_APART_SECS));
         }

@@ -22,7 +22,8 @@ pub struct PanelLayout {
     pub version: u32,
     /// Open panels from top to bottom, each with its side.
     pub open: Vec<(PanelKind, Side)>,
-    /// All panels hidden.
+    /// All panels hidden: for this run only. Older files have it.
+    #[serde(default, skip_serializing)]
     pub hidden: bool,
     /// What is shown besides the characters.
     pub shown: Shown,
@@ -95,10 +96,11 @@ impl PanelLayout {
     /// Where the user's layout is kept; `None` when the system names no such place.
     #[must_use]
     pub fn home() -> Option<PathBuf> {
-        let base = std::env::var_os("XDG_CONFIG_HOME")
-            .or_else(|| std::env::var_os("APPDATA"))
-            .map(PathBuf::from)
-            .or_else(|| std::env::var_os("HOME").map(|home| PathBuf::from(home).join(".config")))?;
+        // A variable that is set to nothing counts as not set.
+        let folder = |name| std::env::var_os(name).filter(|value| !value.is_empty()).map(PathBuf::from);
+        let base = folder("XDG_CONFIG_HOME")
+            .or_else(|| folder("APPDATA"))
+            .or_else(|| folder("HOME").map(|home| home.join(".config")))?;
         Some(base.join("policy-space").join("layout.ron"))
     }
 
@@ -114,6 +116,21 @@ impl PanelLayout {
         Self::from_bytes(path, &files::read(path, MOST_BYTES).map_err(file)?)
     }
 
+    /// Reads a layout that is to be written again. One that can't be read is copied aside first, so that nothing of it is lost. The second
+    /// value says so; the third is false where it could not be copied: then nothing must be written.
+    #[must_use]
+    pub fn load_or_keep_aside(path: &Path) -> (Self, Option<String>, bool) {
+        let error = match Self::load(path) {
+            Ok(layout) => return (layout, None, true),
+            Err(error) => error,
+        };
+        let (said, kept) = match files::keep_aside(path) {
+            Ok(aside) => (format!("{error}. The old file is kept as {}.", aside.display()), true),
+            Err(_) => (format!("{error}. Settings are not saved in this run."), false),
+        };
+        (Self::default(), Some(said), kept)
+    }
+
     /// Reads the bytes of a layout; `path` is only named in errors.
     ///
     /// # Errors
@@ -126,7 +143,7 @@ impl PanelLayout {
             return Err(LayoutError::Version { path: path.to_owned(), found: versioned.version });
         }
         let layout: Self = ron::from_str(content).map_err(|e| text(e.to_string()))?;
-        Ok(Self { preferences: layout.preferences.clamped(), ..layout })
+        Ok(Self { preferences: layout.preferences.clamped(), hidden: false, ..layout })
     }
 
     /// Writes the layout, with its folder.
@@ -245,9 +262,30 @@ mod tests {
         std::fs::write(&path, old).unwrap();
         let layout = PanelLayout::load(&path).unwrap();
         assert_eq!((layout.camera, layout.preferences), (CameraMode::Chase, Preferences::default()));
+        assert!(!layout.hidden, "a start without panels looks broken");
+        layout.save(&path).unwrap();
+        assert!(!std::fs::read_to_string(&path).unwrap().contains("hidden"));
         std::fs::write(&path, old.replace("presets: []", "presets: [], preferences: (ui_scale: 1e9)"))
             .unwrap();
         assert_eq!(PanelLayout::load(&path).unwrap().preferences.ui_scale, 2.0);
+    }
+
+    #[test]
+    fn a_layout_that_cannot_be_read_is_kept_beside_the_new_one() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("layout.ron");
+        assert_eq!(PanelLayout::load_or_keep_aside(&path), (PanelLayout::default(), None, true));
+        std::fs::write(&path, "(version: 99, presets: [])").unwrap();
+        let (mut layout, said, kept) = PanelLayout::load_or_keep_aside(&path);
+        assert!(kept && said.unwrap().contains("layout.ron.bad"));
+        let mut file = KeptLayout::new(path.clone(), &layout);
+        layout.preferences.advanced = true;
+        file.keep(&layout).unwrap();
+        assert_eq!(PanelLayout::load(&path).unwrap(), layout);
+        let aside = std::fs::read_to_string(folder.path().join("layout.ron.bad")).unwrap();
+        assert_eq!(aside, "(version: 99, presets: [])");
+        // What can't be copied must not be written over.
+        assert!(!PanelLayout::load_or_keep_aside(folder.path()).2);
     }
 
     #[test]

@@ -2,6 +2,8 @@
 
 use std::path::PathBuf;
 
+use anyhow::bail;
+
 use super::{Demo, GhostChoice, load};
 use crate::app::{App, Best, PanelKind, PanelLayout, Side, Toasts};
 use crate::dropped::word_about;
@@ -27,15 +29,11 @@ pub fn open(demo: &Demo) -> anyhow::Result<Opened> {
     let mut toasts = Toasts::default();
     // A clip needs other panels than the demo, whose layout it leaves alone.
     let clip = demo.poses.as_deref();
-    let home = if demo.no_layout || demo.headless || clip.is_some() { None } else { PanelLayout::home() };
-    let mut layout = match home.as_deref().map(PanelLayout::load) {
-        Some(Ok(layout)) => layout,
-        Some(Err(error)) => {
-            toasts.error(error.to_string());
-            PanelLayout::default()
-        }
-        None => PanelLayout::default(),
-    };
+    let mut home = if demo.no_layout || demo.headless || clip.is_some() { None } else { PanelLayout::home() };
+    let (mut layout, said, may_save) =
+        home.as_deref().map_or((PanelLayout::default(), None, true), PanelLayout::load_or_keep_aside);
+    said.into_iter().for_each(|said| toasts.error(said));
+    home = home.filter(|_| may_save);
     // A clip has nothing to steer, and who asks for panels gets them.
     layout.preferences.advanced |= clip.is_some() || demo.panels.is_some();
     if clip.is_some() {
@@ -67,6 +65,9 @@ pub fn open(demo: &Demo) -> anyhow::Result<Opened> {
     };
     let config = if demo.compare { config.compared() } else { config };
     let mut sim = Simulation::new(pack, config)?;
+    if demo.second_script.is_some() && !sim.has_second_character() {
+        bail!("--second-script needs the playground with at least 2 characters");
+    }
     sim.set_blend_mode(demo.mode);
     sim.renews_controllers = demo.renew_controllers;
     let (appearance, complaint) = load::appearance(demo.mesh.as_deref(), sim.pack(), sim.model());
