@@ -3,6 +3,7 @@
 use egui::{Key, Ui};
 use policy_core::{BlendMode, Button, Buttons, GamepadState};
 
+use super::latch::Latch;
 use super::{App, KeyAction, KeyMap, Record, ViewerCommand};
 use crate::camera::CameraMode;
 use crate::sim::{GhostKind, SHOVE_BUTTON};
@@ -11,9 +12,6 @@ use crate::sim::{GhostKind, SHOVE_BUTTON};
 const RAMP_SECS: f32 = 1.2;
 /// Seconds in which the stick follows the keys.
 const STICK_SECS: f32 = 0.15;
-
-/// Least seconds for which a button stays down, a little more than a tick: a key that is tapped for less than a frame counts too.
-const LEAST_PRESS_SECS: f32 = 0.05;
 
 /// Buttons that keys press.
 const BUTTON_KEYS: [(KeyAction, Button); 7] = [
@@ -33,8 +31,8 @@ pub struct Keys {
     wanted_right: [f32; 2],
     wanted_triggers: [f32; 2],
     buttons: Buttons,
-    /// For how long each of [`BUTTON_KEYS`] stays down at least, seconds.
-    pressed_secs: [f32; BUTTON_KEYS.len()],
+    /// Buttons whose keys went down since the last tick.
+    tapped: Latch,
     stick: [f32; 2],
     triggers: [f32; 2],
     flight: [f32; 3],
@@ -65,8 +63,18 @@ impl Keys {
             right_stick: self.wanted_right,
             left_trigger: self.triggers[0],
             right_trigger: self.triggers[1],
-            buttons: self.buttons,
+            buttons: self.tapped.state(self.buttons),
         }
+    }
+
+    /// A tick has seen the keys.
+    pub(super) fn end_tick(&mut self) {
+        self.tapped.clear();
+    }
+
+    /// All keys up: another thing reads the keyboard. Sticks and triggers go back as if they were released.
+    fn release(&mut self) {
+        *self = Self { stick: self.stick, triggers: self.triggers, ..Self::default() };
     }
 
     /// Where a free camera is to fly: ahead, to the right and up, each in [-1, 1].
@@ -97,11 +105,11 @@ impl Keys {
         self.wanted_right = [axis(&[Key::L], &[Key::U]), axis(&[Key::O], &[Key::I])].map(|v| 0.6 * v);
         self.wanted_triggers = [down(&[key(KeyAction::Lower)]), down(&[key(KeyAction::Faster)])];
         let mut buttons = Buttons::NONE;
-        for ((action, button), secs) in BUTTON_KEYS.into_iter().zip(&mut self.pressed_secs) {
-            if input.key_pressed(key(action)) {
-                *secs = LEAST_PRESS_SECS;
+        for (action, button) in BUTTON_KEYS {
+            if goes_down(input, key(action), false) {
+                self.tapped.press(button);
             }
-            buttons.set(button, input.key_down(key(action)) || *secs > 0.0);
+            buttons.set(button, input.key_down(key(action)));
         }
         self.buttons = buttons;
     }
@@ -116,7 +124,6 @@ impl Keys {
             towards(&mut self.stick[i], self.wanted_stick[i], STICK_SECS);
             towards(&mut self.triggers[i], self.wanted_triggers[i], RAMP_SECS);
         }
-        self.pressed_secs.iter_mut().for_each(|secs| *secs = (*secs - dt).max(0.0));
     }
 }
 
@@ -134,10 +141,11 @@ pub(super) fn release(context: &egui::Context, app: &mut App) {
 /// Reads the keys of this frame.
 pub(super) fn read(ui: &Ui, app: &mut App, commands: &mut Vec<ViewerCommand>) {
     if ui.ctx().text_edit_focused() {
-        app.keys = Keys { stick: app.keys.stick, triggers: app.keys.triggers, ..Keys::default() };
+        app.keys.release();
         return;
     }
     if let Some(action) = app.rebinding {
+        app.keys.release();
         return rebind(ui, app, action, commands);
     }
     ui.input(|input| {
@@ -145,14 +153,27 @@ pub(super) fn read(ui: &Ui, app: &mut App, commands: &mut Vec<ViewerCommand>) {
         for (key, command) in shortcuts(app) {
             // A text field or drop-down that was open takes this key for itself.
             let taken = key == Key::Escape && app.escape_taken;
-            if input.key_pressed(key) && !taken {
+            if goes_down(input, key, REPEATING_KEYS.contains(&key)) && !taken {
                 commands.push(command);
             }
         }
-        if app.leaving && input.key_pressed(Key::Enter) {
+        if app.leaving && goes_down(input, Key::Enter, false) {
             commands.push(ViewerCommand::Quit);
         }
     });
+}
+
+/// Shortcuts that act again and again while their key is held: ticks and speeds.
+const REPEATING_KEYS: [Key; 5] = [Key::N, Key::B, Key::Minus, Key::Plus, Key::Equals];
+
+/// True when a key went down in this frame; with `repeats` also when it is held for so long that it repeats.
+pub(super) fn goes_down(input: &egui::InputState, key: Key, repeats: bool) -> bool {
+    input.events.iter().any(|event| match event {
+        egui::Event::Key { key: pressed, pressed: true, repeat, .. } => {
+            *pressed == key && (repeats || !repeat)
+        }
+        _ => false,
+    })
 }
 
 /// Gives the key that is pressed to an action. Escape gives up; a key of the demo itself is refused.
@@ -166,7 +187,7 @@ fn rebind(ui: &Ui, app: &App, action: KeyAction, commands: &mut Vec<ViewerComman
     let Some(key) = pressed else { return };
     if key != Key::Escape {
         if shortcuts(app).iter().any(|(taken, _)| *taken == key) || PICTURE_KEYS.contains(&key) {
-            commands.push(ViewerCommand::Complain(format!("The key {} has a use already.", key.name())));
+            commands.push(ViewerCommand::Complain(format!("{} is already used.", key.name())));
         } else {
             let mut preferences = app.layout.preferences;
             preferences.keys.bind(action, key);

@@ -12,6 +12,7 @@ mod first_steps;
 mod key_help;
 mod key_map;
 mod keys;
+mod latch;
 mod layers;
 mod layout;
 mod panel_kind;
@@ -47,6 +48,7 @@ pub use first_steps::{Doing, FirstStep, FirstSteps};
 pub use key_help::{PAD, key_help};
 pub use key_map::{KeyAction, KeyMap};
 pub use keys::Keys;
+use latch::Latch;
 pub use layers::{Layers, Preset};
 pub use layout::{KeptLayout, LAYOUT_VERSION, LayoutError, PanelLayout};
 pub use panel_kind::{PanelKind, Side};
@@ -141,6 +143,15 @@ pub struct App {
     escape_taken: bool,
     /// What was refused a moment ago, and for how many seconds it is still said.
     refused: Option<(String, f32)>,
+    /// Buttons of the pads that went down since the last tick.
+    pad_taps: Latch,
+    second_taps: Latch,
+    /// Where the mouse was when it last moved by more than it jitters.
+    mouse_at: Option<egui::Pos2>,
+    /// True while what was used last is a pad: hints then name its buttons.
+    uses_pad: bool,
+    /// A script or a recording steers instead of the player.
+    pub is_scripted: bool,
     /// A second player's pad was refused, which is said once.
     second_refused: bool,
     /// The triggers when a panel took over from them.
@@ -157,8 +168,8 @@ pub struct App {
     pub ear: Ear,
     /// Whether there is something to play it on.
     pub speaker: SpeakerState,
-    /// A file that was dropped on the window; the frame composer opens it.
-    pub dropped: Option<std::path::PathBuf>,
+    /// Files that were dropped on the window; the frame composer opens them in turn.
+    pub dropped: Vec<std::path::PathBuf>,
     /// Records the pad, or plays a replay.
     pub replaying: Replaying,
     /// The file of that, and how it ended.
@@ -205,6 +216,11 @@ impl App {
             free: egui::Rect::ZERO,
             escape_taken: false,
             refused: None,
+            pad_taps: Latch::default(),
+            second_taps: Latch::default(),
+            mouse_at: None,
+            uses_pad: false,
+            is_scripted: false,
             second_refused: false,
             overridden_at: GamepadState::default(),
             ground_changed: true,
@@ -213,7 +229,7 @@ impl App {
             comparison: Comparison::default(),
             ear: Ear::default(),
             speaker: SpeakerState::default(),
-            dropped: None,
+            dropped: Vec::new(),
             replaying: Replaying::Off,
             replay_line: ReplayLine::default(),
             replay_stopped: None,
@@ -229,11 +245,18 @@ impl App {
     /// What steers: the tour while it plays, else the pad, or the keyboard when the pad is at rest.
     #[must_use]
     pub fn input(&self) -> GamepadState {
+        let pad = GamepadState { buttons: self.pad_taps.state(self.pad.state.buttons), ..self.pad.state };
         match self.tour.pad() {
             Some(pad) => pad,
-            None if self.pad.state == GamepadState::default() => self.keys.state(),
-            None => self.pad.state,
+            None if pad == GamepadState::default() => self.keys.state(),
+            None => pad,
         }
+    }
+
+    /// True where hints name buttons of the pad instead of keys.
+    #[must_use]
+    pub fn uses_pad(&self) -> bool {
+        self.uses_pad && self.pad.name.is_some()
     }
 
     /// All panels, keys and the mouse: one frame of the user's doing. `around` as in [`App::set_scene`].

@@ -1,5 +1,6 @@
 //! The mouse in the picture: turns the camera, pulls bodies and props, throws balls.
 
+use super::keys::goes_down;
 use super::{App, ViewerCommand};
 use crate::render::View;
 use crate::sim::{Held, SharedWorld};
@@ -75,11 +76,12 @@ const THROW_KEY: egui::Key = egui::Key::T;
 const SPAWN_KEY: egui::Key = egui::Key::Y;
 
 fn throw(ui: &Ui, app: &App, free: Rect, view: &View, commands: &mut Vec<ViewerCommand>) {
-    if ui.ctx().text_edit_focused() || app.sim.playback().is_some() {
+    if ui.ctx().text_edit_focused() || app.rebinding.is_some() || app.sim.playback().is_some() {
         return;
     }
     let (throws, spawns, mouse) = ui.input(|input| {
-        (input.key_pressed(THROW_KEY), input.key_pressed(SPAWN_KEY), input.pointer.latest_pos())
+        let down = |key| goes_down(input, key, false);
+        (down(THROW_KEY), down(SPAWN_KEY), input.pointer.latest_pos())
     });
     // Without a mouse in the picture they go to its middle.
     let at = mouse.filter(|at| free.contains(*at)).unwrap_or(free.center());
