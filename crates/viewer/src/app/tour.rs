@@ -11,6 +11,8 @@ use crate::sim::SharedWorld;
 
 /// Seconds without any input after which the tour begins.
 pub const IDLE_SECS: f32 = 45.0;
+/// That it begins is told so many seconds before.
+const TOLD_SECS: f32 = 10.0;
 /// Longest step that counts, seconds: a window that was moved or asleep was not idle.
 const LONGEST_STEP: f32 = 0.25;
 /// On the way to one point for longer, it begins anew, seconds.
@@ -55,16 +57,19 @@ impl Tour {
         self.playing = Some(Playing::Due);
     }
 
-    /// Lets `dt` seconds of the clock on the wall pass. The tour begins after [`IDLE_SECS`] of them in a row with
-    /// `may_play`, and ends without.
-    pub fn advance(&mut self, dt: f32, may_play: bool) {
-        if !may_play {
-            return self.interrupt();
-        }
+    /// Lets `dt` seconds of the clock on the wall pass without any input. The tour begins after [`IDLE_SECS`] of them.
+    pub fn advance(&mut self, dt: f32) {
         self.idle_secs += dt.clamp(0.0, LONGEST_STEP);
         if self.playing.is_none() && self.idle_secs > IDLE_SECS {
             self.start();
         }
+    }
+
+    /// Seconds until the tour begins, once they are few enough to be told; `None` before that and while it plays.
+    #[must_use]
+    pub fn begins_in(&self) -> Option<f32> {
+        let left = IDLE_SECS - self.idle_secs;
+        (self.playing.is_none() && left < TOLD_SECS).then_some(left.max(0.0))
     }
 
     /// Begins when it is due: over the course where there is a way, else by the script. True when it begins at the start of a way.
@@ -154,7 +159,7 @@ mod tests {
     /// A tour by script that has waited for `secs` seconds.
     fn waited(secs: f32) -> Tour {
         let mut tour = Tour::default();
-        (0..(secs * 10.0) as usize).for_each(|_| tour.advance(0.1, true));
+        (0..(secs * 10.0) as usize).for_each(|_| tour.advance(0.1));
         tour.begin(None);
         tour
     }
@@ -172,18 +177,20 @@ mod tests {
         assert!(tour.pad().unwrap().left_stick[1] > 0.9, "after five seconds it walks");
         tour.interrupt();
         assert_eq!(tour.pad(), None);
-        tour.advance(0.1, true);
+        tour.advance(0.1);
         assert!(!tour.is_playing(), "it waits as long as before");
     }
 
     #[test]
-    fn it_waits_while_it_may_not_play_and_a_stall_is_not_idle() {
-        let mut tour = waited(IDLE_SECS - 1.0);
-        tour.advance(3600.0, true);
+    fn it_is_told_before_it_begins_and_a_stall_is_not_idle() {
+        assert_eq!(waited(IDLE_SECS - 11.0).begins_in(), None);
+        let mut tour = waited(IDLE_SECS - 5.0);
+        assert!((tour.begins_in().unwrap() - 5.0).abs() < 0.2, "{tour:?}");
+        tour.advance(3600.0);
         assert!(!tour.is_playing());
-        tour.advance(0.1, false);
-        tour.advance(2.0, true);
-        assert!(!tour.is_playing());
+        tour.interrupt();
+        assert_eq!(tour.begins_in(), None);
+        assert_eq!(waited(IDLE_SECS + 1.0).begins_in(), None, "it plays");
     }
 
     #[test]

@@ -1,6 +1,7 @@
 //! What the player does, seen from outside: whether anybody steers, and which first steps are done.
 
 use glam::Vec3;
+use playground::RaceState;
 use policy_core::GamepadState;
 
 use super::first_steps::path;
@@ -13,24 +14,61 @@ const EYES_ABOVE_ROOT_M: f32 = 0.4;
 /// A stick that is pushed less does not steer.
 const STICK_REST: f32 = 0.05;
 
+/// A mouse that moves by less only jitters, points.
+const JITTER_POINTS: f32 = 3.0;
+
 impl App {
     /// Notes whether the player touched mouse or keyboard in this frame: the tour waits, or ends.
     pub(super) fn see_user(&mut self, context: &egui::Context) {
-        let acts = |event: &egui::Event| {
-            use egui::Event as E;
-            matches!(
-                event,
-                E::Key { .. }
-                    | E::Text(_)
-                    | E::PointerMoved(_)
-                    | E::PointerButton { .. }
-                    | E::MouseWheel { .. }
-                    | E::Touch { .. }
-            )
-        };
-        if context.input(|input| input.events.iter().any(acts)) {
-            self.tour.interrupt();
+        let events = context.input(|input| input.events.clone());
+        let mut acts = false;
+        for event in &events {
+            acts |= self.is_doing(event);
         }
+        if acts {
+            self.interrupt_tour();
+        }
+    }
+
+    /// True for what a player does. A mouse that jitters does nothing, and neither does one that is found in a window that opens or gets
+    /// the focus.
+    fn is_doing(&mut self, event: &egui::Event) -> bool {
+        use egui::Event as E;
+        match event {
+            E::PointerMoved(at) => {
+                let from = *self.mouse_at.get_or_insert(*at);
+                let moves = from.distance(*at) > JITTER_POINTS;
+                if moves {
+                    self.mouse_at = Some(*at);
+                }
+                moves
+            }
+            E::PointerGone | E::WindowFocused(_) => {
+                self.mouse_at = None;
+                false
+            }
+            E::Key { pressed, .. } => *pressed,
+            E::Text(_) | E::PointerButton { .. } | E::MouseWheel { .. } | E::Touch { .. } => true,
+            _ => false,
+        }
+    }
+
+    /// The tour ends, or waits anew. A run over the course that it began is not the player's.
+    fn interrupt_tour(&mut self) {
+        if self.tour.is_playing()
+            && let Some(shared) = self.sim.shared_mut()
+        {
+            shared.restart_race();
+        }
+        self.tour.interrupt();
+    }
+
+    /// True while the tour may begin by itself: the player neither looks into the method nor is in the middle of something.
+    fn may_begin_tour(&self) -> bool {
+        let races = self.sim.shared().is_some_and(|shared| shared.race().state() == RaceState::Running);
+        let overrides = self.sim.overrides.goal.is_some() || self.layers.active;
+        let preferences = &self.layout.preferences;
+        preferences.plays_tour && !preferences.advanced && !races && !overrides && self.grab.is_none()
     }
 
     /// Lets `dt` seconds of the clock on the wall pass for what waits for the player.
@@ -42,8 +80,15 @@ impl App {
         let busy = self.help || self.leaving || self.choosing || self.recording.is_some();
         let is_free = matches!(self.replaying, Replaying::Off);
         let runs = !self.clock.paused && self.failure.is_none() && self.sim.playback().is_none();
-        let wanted = self.layout.preferences.plays_tour || self.tour.is_playing();
-        self.tour.advance(dt, wanted && runs && is_free && !busy && !steered);
+        if !at_rest(&self.pad.state) || self.keys != Keys::default() {
+            self.uses_pad = !at_rest(&self.pad.state);
+        }
+        let wanted = self.tour.is_playing() || self.may_begin_tour();
+        if wanted && runs && is_free && !busy && !steered {
+            self.tour.advance(dt);
+        } else {
+            self.interrupt_tour();
+        }
         self.toasts.advance(dt);
         if self.first_steps.are_over() {
             self.layout.preferences.shows_first_steps = false;
@@ -76,11 +121,17 @@ impl App {
     /// Hands the second player's pad on, and says when a second player joins or leaves. Replays and the tour know one player.
     pub(super) fn follow_second(&mut self) {
         let alone = !matches!(self.replaying, Replaying::Off) || self.tour.is_playing();
-        let wanted = self.pad.second.filter(|_| !alone);
+        let taps = self.second_taps;
+        let latched = |pad: GamepadState| GamepadState { buttons: taps.state(pad.buttons), ..pad };
+        let wanted = self.pad.second.filter(|_| !alone).map(latched);
         let was = self.sim.has_second_player();
         let taken = self.sim.set_second_pad(wanted.as_ref());
         match (was, self.sim.has_second_player()) {
-            (false, true) => self.toasts.note("A second player steers a character. Start leaves it."),
+            (false, true) if self.pad.name.is_none() => {
+                self.toasts
+                    .note("A second player has joined. Press Start again to steer your own character.");
+            }
+            (false, true) => self.toasts.note("A second player has joined. Press Start to leave."),
             (true, false) => self.toasts.note("The second player has left."),
             _ if !taken && !self.second_refused => {
                 self.toasts.error("A second player needs the playground and a second character there.");

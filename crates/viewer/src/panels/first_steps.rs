@@ -11,7 +11,7 @@ const TICK: f32 = 14.0;
 
 pub(super) fn show(ui: &Ui, app: &App, free: Rect, commands: &mut Vec<ViewerCommand>) {
     if app.tour.is_playing() {
-        return tour(ui, free);
+        return;
     }
     let is_replay = matches!(app.replaying, Replaying::Playing(_));
     if !app.layout.preferences.shows_first_steps || app.sim.playback().is_some() || is_replay {
@@ -25,7 +25,7 @@ pub(super) fn show(ui: &Ui, app: &App, free: Rect, commands: &mut Vec<ViewerComm
             ui.horizontal(|ui| {
                 let done = app.first_steps.are_done(app.sim.pack());
                 ui.strong(if done { "That is all you need. Have fun!" } else { "Try this first" });
-                let close = ui.small_button("x").on_hover_text("Close this list for good");
+                let close = ui.small_button("x").on_hover_text("Close this list (Settings shows it again)");
                 if close.clicked() {
                     let mut preferences = app.layout.preferences;
                     preferences.shows_first_steps = false;
@@ -45,7 +45,7 @@ fn row(ui: &mut Ui, app: &App, step: FirstStep) {
     let title = RichText::new(step.title());
     ui.label(if done { title.strikethrough().weak() } else { title.strong() });
     if !done {
-        ui.label(step.how(app.pad.name.is_some(), &app.layout.preferences.keys));
+        ui.label(step.how(app.uses_pad(), &app.layout.preferences.keys));
     }
 }
 
@@ -61,9 +61,15 @@ fn tick(ui: &mut Ui, done: bool) {
     }
 }
 
-fn tour(ui: &Ui, free: Rect) {
+/// Says in every layout that the tour plays, or that it is about to begin.
+pub(super) fn tour(ui: &Ui, app: &App, free: Rect) {
+    let text = match app.tour.begins_in() {
+        _ if app.tour.is_playing() => "Tour: press any key or button to take over".to_owned(),
+        Some(secs) => format!("The tour starts in {:.0} s", secs.ceil()),
+        None => return,
+    };
     let area = egui::Area::new(egui::Id::unique("tour")).pivot(Align2::CENTER_TOP);
     area.fixed_pos(free.center_top() + vec2(0.0, 56.0)).show(ui.ctx(), |ui| {
-        frame().show(ui, |ui| ui.strong("Tour: press any key or button to steer yourself"));
+        frame().show(ui, |ui| ui.strong(text));
     });
 }

@@ -55,6 +55,7 @@ pub(crate) fn show(ui: &mut Ui, app: &App, commands: &mut Vec<ViewerCommand>) ->
     } else {
         first_steps::show(ui, app, free, commands);
     }
+    first_steps::tour(ui, app, free);
     race::show(ui, app, free);
     replay::show(ui, app, free);
     comparison::show(ui, app, free);
@@ -100,7 +101,7 @@ fn bar(ui: &mut Ui, app: &App, commands: &mut Vec<ViewerCommand>) {
             if ui.button("Help (F1)").on_hover_text("What every key and button does").clicked() {
                 commands.push(ViewerCommand::Help(!app.help));
             }
-            let told = "Camera, sensitivity, size of texts, quality, keys";
+            let told = "Camera, sensitivity, text size, quality, keys";
             if ui.button("Settings (F4)").on_hover_text(told).clicked() {
                 commands.push(ViewerCommand::ChoosePreferences(!app.choosing));
             }
@@ -111,7 +112,7 @@ fn bar(ui: &mut Ui, app: &App, commands: &mut Vec<ViewerCommand>) {
             }
             let compares = app.views() > 1;
             let (label, told) = match compares {
-                true => ("End comparison", "Back to where you were"),
+                true => ("End comparison", "Back to the scene, from its start"),
                 false => {
                     ("Compare", "Three ways to blend under the same stick, side by side, with falls counted")
                 }
@@ -124,7 +125,7 @@ fn bar(ui: &mut Ui, app: &App, commands: &mut Vec<ViewerCommand>) {
 }
 
 /// The panels on both sides of the picture. Where there is too little room they share one column, and where there
-/// is too little even for that none is shown.
+/// is too little even for that a line says so.
 fn columns(ui: &mut Ui, app: &App, commands: &mut Vec<ViewerCommand>) {
     let on = |side: Side| -> Vec<PanelKind> {
         app.layout.open.iter().filter(|(_, s)| *s == side).map(|(kind, _)| *kind).collect()
@@ -132,6 +133,10 @@ fn columns(ui: &mut Ui, app: &App, commands: &mut Vec<ViewerCommand>) {
     let (mut left, mut right) = (on(Side::Left), on(Side::Right));
     let room = ui.available_width();
     if room < SIDE_WIDTH + LEAST_VIEW {
+        if !left.is_empty() || !right.is_empty() {
+            let top = egui::Panel::top("too narrow").frame(frame());
+            top.show(ui, |ui| ui.weak("The window is too narrow for panels"));
+        }
         return;
     }
     if room < 2.0 * SIDE_WIDTH + LEAST_VIEW && !left.is_empty() {
@@ -193,7 +198,8 @@ fn titled(ui: &mut Ui, app: &App, kind: PanelKind, commands: &mut Vec<ViewerComm
 fn status(ui: &Ui, app: &App, free: Rect) {
     let player = app.sim.player();
     let skill = player.report().skill.map(|s| app.sim.pack().skills()[s.skill.index()].name.as_str());
-    let state = if app.clock.paused { "  paused" } else { "" };
+    let state = format!("  {}", app.clock.state());
+    let state = state.trim_end();
     let text = match app.sim.playback() {
         Some(clip) => {
             format!("{}   {:.2} of {:.2} s{state}", clip.clip(), clip.secs(app.alpha()), clip.duration())

@@ -131,6 +131,11 @@ impl SharedWorld {
         &self.state.race
     }
 
+    /// Forgets the run over the course: the first ring starts another.
+    pub(crate) fn restart_race(&mut self) {
+        self.state.race = Race::default();
+    }
+
     /// A character, by index.
     ///
     /// # Panics
