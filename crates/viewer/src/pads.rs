@@ -12,7 +12,8 @@ pub struct Pads {
     players: Players,
 }
 
-/// Which pad is whose. Start makes a pad the second player's, or gives it back.
+/// Which pad is whose. Start makes a pad the second player's, or gives it back. Where there is no
+/// character for a second player it pauses.
 #[derive(Clone, Debug, Default, PartialEq)]
 struct Players {
     second: Option<DeviceKey>,
@@ -23,21 +24,24 @@ struct Players {
 }
 
 impl Players {
-    /// Takes the buttons of every pad, and the pad that was used last.
-    fn follow(&mut self, pads: Vec<(DeviceKey, Buttons)>, used: Option<DeviceKey>) {
+    /// Takes the buttons of every pad, and the pad that was used last. True when Start went down and hands nothing over, as where no
+    /// second player `may_join`.
+    fn follow(&mut self, pads: Vec<(DeviceKey, Buttons)>, used: Option<DeviceKey>, may_join: bool) -> bool {
         let there = |key: &DeviceKey| pads.iter().any(|(pad, _)| pad == key);
         let before = |key: &DeviceKey| self.held.iter().find(|(pad, _)| pad == key).map(|(_, held)| *held);
         let pressed = pads.iter().find(|(key, now)| {
             now.contains(Button::Start) && before(key).is_some_and(|held| !held.contains(Button::Start))
         });
+        let pauses = pressed.is_some() && !may_join;
         if let Some((key, _)) = pressed {
             self.second = if self.second == Some(*key) { None } else { Some(*key) };
         }
-        self.second = self.second.filter(there);
+        self.second = self.second.filter(there).filter(|_| may_join);
         let mine = |key: &DeviceKey| there(key) && Some(*key) != self.second;
         let any = || pads.iter().map(|(key, _)| *key).find(mine);
         self.first = used.filter(mine).or(self.first.filter(mine)).or_else(any);
         self.held = pads;
+        pauses
     }
 }
 
@@ -56,12 +60,13 @@ impl Pads {
         Self { pads, complaints, players: Players::default() }
     }
 
-    /// Reads the pads. Without one the state is neutral.
-    pub fn poll(&mut self, view: &mut PadView) {
+    /// Reads the pads. Without one the state is neutral. True when Start asks to pause or to continue, which it does where no second
+    /// player `may_join`.
+    pub fn poll(&mut self, view: &mut PadView, may_join: bool) -> bool {
         self.pads.poll();
         let pads = &self.pads;
         let held = pads.pads().map(|pad| (pad.device.key, pads.report_of(pad).state.buttons)).collect();
-        self.players.follow(held, pads.active().map(|pad| pad.device.key));
+        let pauses = self.players.follow(held, pads.active().map(|pad| pad.device.key), may_join);
         let pad_of = |key: Option<DeviceKey>| pads.pads().find(|pad| Some(pad.device.key) == key);
         let (active, second) = (pad_of(self.players.first), pad_of(self.players.second));
         let name = |pad: &Pad| format!("{} through {:?}", pad.device.name, pad.device.source);
@@ -76,6 +81,7 @@ impl Pads {
         if let Some(error) = active.and_then(gamepad::Pad::last_error) {
             view.problems.push(format!("not understood: {error}"));
         }
+        pauses
     }
 }
 
@@ -95,15 +101,15 @@ mod tests {
     fn start_gives_a_pad_to_the_second_player_and_back() {
         let (a, b) = (DeviceKey(1), DeviceKey(2));
         let mut players = Players::default();
-        players.follow(vec![(a, REST), (b, REST)], Some(a));
+        assert!(!players.follow(vec![(a, REST), (b, REST)], Some(a), true));
         assert_eq!((players.first, players.second), (Some(a), None));
-        players.follow(vec![(a, REST), (b, start())], Some(b));
+        assert!(!players.follow(vec![(a, REST), (b, start())], Some(b), true));
         assert_eq!((players.first, players.second), (Some(a), Some(b)));
         // Held on, it does nothing more, and the second player's pad is never the first's.
-        players.follow(vec![(a, REST), (b, start())], Some(b));
+        assert!(!players.follow(vec![(a, REST), (b, start())], Some(b), true));
         assert_eq!((players.first, players.second), (Some(a), Some(b)));
-        players.follow(vec![(a, REST), (b, REST)], Some(b));
-        players.follow(vec![(a, REST), (b, start())], Some(b));
+        assert!(!players.follow(vec![(a, REST), (b, REST)], Some(b), true));
+        assert!(!players.follow(vec![(a, REST), (b, start())], Some(b), true));
         assert_eq!((players.first, players.second), (Some(b), None));
     }
 
@@ -111,18 +117,32 @@ mod tests {
     fn a_single_pad_can_be_the_second_players_beside_a_keyboard() {
         let a = DeviceKey(1);
         let mut players = Players::default();
-        players.follow(vec![(a, REST)], None);
-        players.follow(vec![(a, start())], Some(a));
+        assert!(!players.follow(vec![(a, REST)], None, true));
+        assert!(!players.follow(vec![(a, start())], Some(a), true));
         assert_eq!((players.first, players.second), (None, Some(a)));
         // Unplugged, nobody has it.
-        players.follow(vec![], None);
+        assert!(!players.follow(vec![], None, true));
         assert_eq!((players.first, players.second), (None, None));
     }
 
     #[test]
     fn a_button_that_is_held_while_a_pad_connects_does_nothing() {
         let mut players = Players::default();
-        players.follow(vec![(DeviceKey(1), start())], Some(DeviceKey(1)));
+        assert!(!players.follow(vec![(DeviceKey(1), start())], Some(DeviceKey(1)), true));
         assert_eq!(players.second, None);
+    }
+
+    #[test]
+    fn where_nobody_can_join_start_pauses_and_the_pad_stays_the_first_players() {
+        let a = DeviceKey(1);
+        let mut players = Players::default();
+        assert!(!players.follow(vec![(a, REST)], Some(a), false));
+        assert!(players.follow(vec![(a, start())], Some(a), false));
+        assert!(!players.follow(vec![(a, start())], Some(a), false), "once");
+        assert_eq!((players.first, players.second), (Some(a), None));
+        // A second player whose character is gone gets its pad back as the first.
+        players.second = Some(a);
+        assert!(!players.follow(vec![(a, REST)], Some(a), false));
+        assert_eq!((players.first, players.second), (Some(a), None));
     }
 }

@@ -8,7 +8,7 @@ pub fn key_help(map: &KeyMap) -> Vec<(String, &'static str)> {
     let key = |action| map.key(action).name().to_owned();
     let mut rows = vec![
         (format!("{}, arrows", map.walk()), "walk where the camera looks; with Shift half as fast"),
-        (key(KeyAction::Faster), "hold: faster, from a walk to a run; it returns slowly"),
+        (key(KeyAction::Faster), "hold to speed up; release to slow down gradually"),
         (key(KeyAction::Lower), "hold: lower, from a walk to a crawl"),
         (key(KeyAction::Style), "hold: the other style, where the character has one"),
         (
@@ -46,9 +46,10 @@ const OTHER_KEYS: [(&str, &str); 14] = [
 ];
 
 /// What pad controls do, for the help overlay.
-pub const PAD: [(&str, &str); 11] = [
+pub const PAD: [(&str, &str); 12] = [
     ("left stick", "direction and speed"),
     ("right stick", "camera"),
+    ("right stick, held down", "hold: face where the camera looks and walk any way"),
     ("right trigger", "faster: walk, jog, run"),
     ("left trigger", "lower: walk, crouch, crawl"),
     ("A or cross", "get up"),
@@ -57,5 +58,5 @@ pub const PAD: [(&str, &str); 11] = [
     ("right shoulder", "hold: the other style, where the character has one"),
     ("left shoulder", "knock the character over"),
     ("d-pad up, down", "in the playground: throw a ball, put a prop down"),
-    ("start", "in the playground: this pad is a second player's, or no more"),
+    ("start", "in the playground: join or leave as a second player; elsewhere: pause"),
 ];

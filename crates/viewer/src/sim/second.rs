@@ -22,8 +22,7 @@ impl Simulation {
     /// The pad of a second player for the ticks from now on; `None` lets its character wander again. Returns false where there is
     /// no character for it: on the empty floor all characters follow the first player.
     pub fn set_second_pad(&mut self, pad: Option<&GamepadState>) -> bool {
-        let has_character =
-            matches!(self.bodies, Bodies::Together(_)) && self.steered.len() > SECOND_CHARACTER;
+        let has_character = self.has_second_character();
         self.second = match (pad, self.second.take()) {
             (Some(pad), Some(player)) => Some(SecondPlayer { pad: *pad, ..player }),
             // What is held when it joins has not just gone down.
@@ -34,6 +33,12 @@ impl Simulation {
             _ => None,
         };
         pad.is_none() || has_character
+    }
+
+    /// True where there is a character for a second player.
+    #[must_use]
+    pub fn has_second_character(&self) -> bool {
+        matches!(self.bodies, Bodies::Together(_)) && self.steered.len() > SECOND_CHARACTER
     }
 
     /// True while a second player steers a character.
