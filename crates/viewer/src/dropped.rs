@@ -55,6 +55,9 @@ pub enum DroppedError {
         /// Why.
         source: PackError,
     },
+    /// A replay keeps to the pack that it began with.
+    #[error("another character can't be opened while a replay is recorded or played")]
+    Replaying,
     /// The pack's body can't be simulated.
     #[error("pack {}: {source}", path.display())]
     Body {

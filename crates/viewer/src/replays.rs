@@ -1,6 +1,6 @@
 //! Records what the player presses, or plays it again and compares states. Knows the scenes of the demo, no files.
 //!
-//! What panels and the mouse change is not recorded: a replay of such a run stops at the first state that differs.
+//! What panels and the mouse change is not recorded: the demo refuses it meanwhile.
 
 use policy_core::{BlendMode, GamepadState, Heading};
 use replay::{Header, Mismatch, Pad, Playback, Recorder, Replay, ReplayError};

@@ -6,10 +6,11 @@ use std::sync::Arc;
 use glam::Vec3;
 use policy_core::CharacterPack;
 
-use super::{App, FirstSteps, Layers, PanelLayout, ViewerCommand};
+use super::{App, Clock, FirstSteps, Layers, PanelLayout, ViewerCommand};
 use crate::appearance;
 use crate::dropped::{Dropped, DroppedError};
 use crate::render::Appearance;
+use crate::replays::Replaying;
 use crate::sim::{Engine, GroundKind, SceneKind, SimConfig, SimError};
 
 /// How far a failure is rewound, seconds.
@@ -43,11 +44,41 @@ fn needs_a_simulation(command: &ViewerCommand) -> bool {
     )
 }
 
+/// Commands that change what a replay does not keep: the world, time, or what steers besides the pad.
+fn spoils_a_replay(command: &ViewerCommand) -> bool {
+    use ViewerCommand as C;
+    matches!(
+        command,
+        C::Goal(Some(_))
+            | C::Mode(_)
+            | C::Compare(_)
+            | C::Skill(_)
+            | C::Scrub(_)
+            | C::StepBack
+            | C::Reset
+            | C::Settings(_)
+            | C::Engine(_)
+            | C::Ground(_)
+            | C::Scene(_)
+            | C::Characters(_)
+            | C::Grab(Some(_))
+            | C::Throw { .. }
+            | C::Spawn { .. }
+    ) || matches!(command, C::Layers(layers) if layers.active)
+}
+
 impl App {
     /// Does what a command says. What can't be done is said in [`App::toasts`] and changes nothing.
     pub fn apply(&mut self, command: ViewerCommand) {
         if self.sim.playback().is_some() && needs_a_simulation(&command) {
             self.toasts.error("A clip is shown: there is nothing to steer and no physics.");
+            return;
+        }
+        if !matches!(self.replaying, Replaying::Off) && spoils_a_replay(&command) {
+            self.toasts.error(match command {
+                ViewerCommand::Compare(_) => "You can't compare while a replay is recorded or played.",
+                _ => "Not possible while a replay is recorded or played.",
+            });
             return;
         }
         if self.views() > 1 && matches!(command, ViewerCommand::Mode(_) | ViewerCommand::Ghost(Some(_))) {
@@ -73,7 +104,10 @@ impl App {
                 self.layout.presets.remove(index);
             }
             ViewerCommand::DeletePreset(_) => {}
-            ViewerCommand::Mode(mode) => self.sim.set_blend_mode(mode),
+            ViewerCommand::Mode(mode) => {
+                self.sim.set_blend_mode(mode);
+                self.toasts.replace("Blend mode: ", mode.name());
+            }
             ViewerCommand::Ghost(Some(kind)) => {
                 if let Err(error) = self.sim.start_ghost(kind) {
                     self.toasts.error(error.to_string());
@@ -95,7 +129,11 @@ impl App {
             ViewerCommand::Shown(shown) => self.layout.shown = shown,
             ViewerCommand::TogglePanel(kind) => self.layout.toggle(kind),
             ViewerCommand::SwapSide(kind) => self.layout.swap_side(kind),
-            ViewerCommand::HidePanels(hidden) => self.layout.hidden = hidden,
+            ViewerCommand::HidePanels(hidden) => {
+                self.layout.hidden = hidden;
+                self.toasts
+                    .replace("Panels ", if hidden { "are hidden: Tab shows them" } else { "are shown" });
+            }
             ViewerCommand::Help(open) => self.help = open,
             ViewerCommand::Record(what) => self.record = Some(what),
             ViewerCommand::Complain(what) => self.toasts.error(what),
@@ -118,7 +156,14 @@ impl App {
     /// Commands that act on time and physics.
     fn apply_to_world(&mut self, command: ViewerCommand) {
         match command {
-            ViewerCommand::Pause(paused) => self.clock.paused = paused,
+            ViewerCommand::Pause(paused) => {
+                self.clock.paused = paused;
+                if !paused {
+                    self.replay_line.ended = None;
+                }
+            }
+            // Behind the window of a failure time stands still.
+            ViewerCommand::Step if self.failure.is_some() => {}
             ViewerCommand::Step => (self.clock.paused, self.clock.steps) = (true, self.clock.steps + 1),
             ViewerCommand::StepBack => {
                 let (kept, age) = self.sim.history();
@@ -126,7 +171,9 @@ impl App {
             }
             ViewerCommand::Scrub(age) => self.scrub(age),
             ViewerCommand::Speed(speed) if speed.is_finite() => {
-                self.clock.speed = speed.clamp(1.0 / 32.0, 8.0);
+                let speed = speed.clamp(1.0 / 32.0, 8.0);
+                self.clock.speed = speed;
+                self.toasts.replace("Speed ", Clock::speed_name(speed));
             }
             ViewerCommand::Reset => self.restart(),
             ViewerCommand::Settings(settings) => {
@@ -147,15 +194,12 @@ impl App {
                 self.sim.rewind_to(((REWIND_SECS / self.sim.tick_secs()).round() as usize).min(kept));
                 // Those that keep no history are still in the state that diverged.
                 for index in self.failure.take().map_or_else(Vec::new, |failure| failure.characters) {
-                    if !self.sim.keeps_history(index) {
+                    if index < self.sim.characters().len() && !self.sim.keeps_history(index) {
                         self.sim.stand_up(index);
                     }
                 }
             }
-            ViewerCommand::ResetAfterFailure => {
-                self.failure = None;
-                self.restart();
-            }
+            ViewerCommand::ResetAfterFailure => self.restart(),
             _ => {}
         }
     }
@@ -215,7 +259,7 @@ impl App {
     fn restart(&mut self) {
         self.sim.reset();
         self.trail.clear();
-        self.grab = None;
+        (self.failure, self.grab) = (None, None);
     }
 
     pub(super) fn rebuild(&mut self, config: SimConfig) {
@@ -225,7 +269,7 @@ impl App {
         match self.sim.rebuild(config) {
             Ok(()) => {
                 self.trail.clear();
-                (self.ground_changed, self.grab) = (true, None);
+                (self.ground_changed, self.grab, self.failure) = (true, None, None);
             }
             Err(error) => self.toasts.error(error.to_string()),
         }
@@ -257,6 +301,7 @@ impl App {
         let rig = appearance::rig(self.sim.model());
         match Dropped::load(path, &rig)? {
             Dropped::Mesh(mesh) => Ok(("mesh", Appearance::new(rig.skeleton(), Some(*mesh)))),
+            Dropped::Pack(_) if !matches!(self.replaying, Replaying::Off) => Err(DroppedError::Replaying),
             Dropped::Pack(pack) => {
                 self.set_pack(Arc::clone(&pack))
                     .map_err(|source| DroppedError::Body { path: path.to_owned(), source })?;

@@ -5,7 +5,6 @@ use policy_core::BlendMode;
 
 use super::App;
 use crate::render::{Scene, View};
-use crate::replays::Replaying;
 use crate::scene_setup::{Picture, set_scene};
 use crate::sim::{SceneKind, SimConfig};
 
@@ -47,10 +46,6 @@ impl App {
     pub(super) fn compare(&mut self, starts: bool) {
         let config = *self.sim.config();
         if starts == config.comparison {
-            return;
-        }
-        if !matches!(self.replaying, Replaying::Off) {
-            self.toasts.error("A replay is recorded or played: it knows one blend mode.");
             return;
         }
         let kept = self.comparison.before.take();

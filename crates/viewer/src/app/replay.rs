@@ -10,7 +10,7 @@ use crate::replays::Replaying;
 pub struct ReplayLine {
     /// Name of its file.
     pub name: String,
-    /// How it ended, and why before its time. Forgotten once the player plays on.
+    /// How it ended, and why before its time. Forgotten once the player plays on: see [`super::ViewerCommand::Pause`].
     pub ended: Option<Result<(), String>>,
 }
 
@@ -18,9 +18,6 @@ impl App {
     /// Pad and camera of the next tick; `None` at the end of a replay, which the clock then waits at.
     pub(super) fn steering(&mut self) -> Option<(GamepadState, Heading)> {
         let (pad, camera) = (self.input(), self.camera.heading());
-        if matches!(self.replaying, Replaying::Off) {
-            self.replay_line.ended = None;
-        }
         let steered = self.replaying.steer(&pad, camera);
         if steered.is_none() {
             self.end_replay(Ok(()));

@@ -60,6 +60,12 @@ impl Toasts {
         self.push(ToastKind::Error, text.into());
     }
 
+    /// Tells of a state that was changed: `what` and how it is now, in place of an earlier message about the same.
+    pub fn replace(&mut self, what: &str, now: impl AsRef<str>) {
+        self.0.retain(|toast| !toast.text.starts_with(what));
+        self.note(format!("{what}{}", now.as_ref()));
+    }
+
     /// A message that is shown already becomes fresh again.
     fn push(&mut self, kind: ToastKind, text: String) {
         self.0.retain(|toast| toast.text != text);
@@ -126,6 +132,14 @@ mod tests {
         toasts.advance(0.2);
         assert_eq!(toasts.take_text().as_deref(), Some("a"));
         assert_eq!(toasts.take_text(), None);
+    }
+
+    #[test]
+    fn a_state_is_told_once_as_it_is_now() {
+        let mut toasts = Toasts::default();
+        toasts.note("a");
+        ["1/2", "1/4"].iter().for_each(|speed| toasts.replace("Speed ", speed));
+        assert_eq!(toasts.take_text().as_deref(), Some("a\nSpeed 1/4"));
     }
 
     #[test]
