@@ -65,8 +65,11 @@ fn without_a_character_for_it_a_second_player_is_told_so_once() {
     app.pad.second = Some(FORWARD);
     (0..3).for_each(|_| drop(app.tick()));
     assert!(!app.sim.has_second_player());
-    let told: Vec<_> = app.toasts.iter().filter(|toast| toast.text.contains("second player")).collect();
-    assert_eq!(told.len(), 1, "{told:?}");
+    let told = app.toasts.take_text().unwrap();
+    assert_eq!(told.matches("second player").count(), 1, "{told}");
+    // A message that is shown is not shown twice: once it is read, it does not come again.
+    (0..3).for_each(|_| drop(app.tick()));
+    assert_eq!(app.toasts.take_text(), None);
 }
 
 #[test]
@@ -81,6 +84,37 @@ fn the_camera_sees_both_players() {
     let clip = view.clip_from_world(16.0 / 9.0);
     for index in [0, SECOND_CHARACTER] {
         let seen = clip.project_point3(app.sim.poses(index, 1.0).positions[0]);
-        assert!(seen.x.abs() < 1.0 && seen.y.abs() < 1.0, "character {index} at {seen}");
+        let ahead = 0.0 < seen.z && seen.z < 1.0;
+        assert!(ahead && seen.x.abs() < 1.0 && seen.y.abs() < 1.0, "character {index} at {seen}");
     }
+}
+
+#[test]
+fn the_camera_looks_through_both_players_and_no_other_character() {
+    let mut sim = playground(3);
+    run(&mut sim, &REST, 1);
+    let head = |sim: &Simulation, index: usize| sim.poses(index, 1.0).positions[1];
+    let [first, second, third] = [0, 1, 2].map(|index| head(&sim, index));
+    let mut hit = |at: glam::Vec3, players: usize| {
+        // From above, where nothing else is.
+        let from = at + glam::Vec3::Z * 2.0;
+        sim.shared_mut().unwrap().hidden_at(from, glam::Vec3::NEG_Z, 2.1, players)
+    };
+    assert_eq!((hit(first, 1), hit(second, 2)), (None, None));
+    assert!(hit(second, 1).is_some() && hit(third, 2).is_some());
+}
+
+#[test]
+fn a_tap_of_a_pad_between_two_ticks_counts_once() {
+    let mut app = App::new(playground(1), PanelLayout::default());
+    app.clock.speed = 1.0 / 32.0;
+    let balls = |app: &App| app.sim.shared().unwrap().pieces().len();
+    let before = balls(&app);
+    for pressed in [false, true, false] {
+        app.pad.state.buttons.set(THROW_BUTTON, pressed);
+        app.advance(0.02);
+    }
+    assert_eq!((app.sim.ticks(), balls(&app)), (0, before), "no tick was due");
+    (0..4).for_each(|_| drop(app.tick()));
+    assert_eq!(balls(&app), before + 1);
 }

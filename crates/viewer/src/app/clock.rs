@@ -40,7 +40,7 @@ impl Clock {
     /// Ticks to run now that `dt` seconds have passed.
     pub fn ticks_due(&mut self, dt: f32) -> u32 {
         let dt = if dt.is_finite() { dt.clamp(0.0, LONGEST_FRAME) } else { 0.0 };
-        let ticks = if self.paused {
+        if self.paused {
             self.left = 0.0;
             std::mem::take(&mut self.steps).min(MOST_TICKS)
         } else {
@@ -48,12 +48,31 @@ impl Clock {
             let ticks = ((self.left / self.tick_secs) as u32).min(MOST_TICKS);
             self.left = (self.left - ticks as f32 * self.tick_secs).min(self.tick_secs);
             ticks
-        };
-        if dt > 0.0 {
+        }
+    }
+
+    /// Notes how many ticks a frame of `dt` seconds has run, for [`Clock::realtime_factor`].
+    pub fn ran(&mut self, ticks: u32, dt: f32) {
+        if dt.is_finite() && dt > 0.0 {
             let now = ticks as f32 * self.tick_secs / dt;
             self.realtime_factor += (now - self.realtime_factor) * (dt * 2.0).min(1.0);
         }
-        ticks
+    }
+
+    /// Whether it stands still or runs at another speed than that of real time, in words; empty where neither is so.
+    #[must_use]
+    pub fn state(&self) -> String {
+        match (self.paused, self.speed) {
+            (true, _) => "paused".into(),
+            (_, 1.0) => String::new(),
+            (_, speed) => format!("speed {}", Self::speed_name(speed)),
+        }
+    }
+
+    /// A speed in words: `1/4`, `2`.
+    #[must_use]
+    pub fn speed_name(speed: f32) -> String {
+        if speed < 1.0 { format!("1/{:.0}", 1.0 / speed) } else { format!("{speed:.0}") }
     }
 
     /// Puts the picture so far into the tick, for pictures at times of their own.
@@ -86,11 +105,31 @@ mod tests {
     }
 
     #[test]
+    fn its_state_is_told_where_it_is_not_the_usual_one() {
+        let clock = Clock::new(TICK_SECS);
+        assert_eq!(clock.state(), "");
+        assert_eq!(Clock { speed: 0.25, ..clock }.state(), "speed 1/4");
+        assert_eq!(Clock { speed: 2.0, ..clock }.state(), "speed 2");
+        assert_eq!(Clock { paused: true, speed: 2.0, ..clock }.state(), "paused");
+    }
+
+    #[test]
     fn a_paused_clock_steps_only_when_asked() {
         let mut clock = Clock { paused: true, ..Clock::new(TICK_SECS) };
         assert_eq!(clock.ticks_due(1.0), 0);
         clock.steps = 1;
         assert_eq!((clock.ticks_due(0.01), clock.ticks_due(0.01)), (1, 0));
+    }
+
+    #[test]
+    fn the_real_time_factor_counts_what_was_run_over_the_whole_frame() {
+        let mut clock = Clock::new(TICK_SECS);
+        for _ in 0..20 {
+            // Half a second is longer than what counts for ticks.
+            assert!(clock.ticks_due(0.5) <= 8);
+            clock.ran(3, 0.5);
+        }
+        assert!((clock.realtime_factor - 0.2).abs() < 1e-3, "{}", clock.realtime_factor);
     }
 
     #[test]

@@ -1,5 +1,8 @@
 //! Time that passes: ticks of the world, the camera that follows, and what is told when the physics diverges.
 
+use std::sync::atomic::{AtomicUsize, Ordering};
+use std::time::{Duration, Instant};
+
 use glam::Vec3;
 use physics::PhysicsCharacter;
 
@@ -7,10 +10,21 @@ use super::{App, Failure, Grab};
 use crate::sim::{Divergence, Held, Playback};
 use crate::text::counted;
 
+/// Ticks of one frame stop after this time; a frame at 30 Hz is as long.
+const TICKS_BUDGET: Duration = Duration::from_millis(30);
+
+/// What is nearer to the middle between two players hides neither, metres.
+const BETWEEN_PLAYERS_M: f32 = 1.0;
+
+/// Failures of this process so far: each has a file of its own.
+static FAILURES: AtomicUsize = AtomicUsize::new(0);
+
 impl App {
     /// Lets `dt` seconds of the clock on the wall pass: physics in whole ticks, camera, gauges.
     pub fn advance(&mut self, dt: f32) {
         self.keys.advance(dt);
+        self.pad_taps.see(self.pad.state.buttons);
+        self.second_taps.see(self.pad.second.unwrap_or_default().buttons);
         self.watch_user(dt);
         self.refused =
             self.refused.take().map(|(what, secs)| (what, secs - dt)).filter(|(_, secs)| *secs > 0.0);
@@ -18,15 +32,28 @@ impl App {
             (self.analysis, self.analysis_soon) = (Some(analysis), None);
         }
         if self.failure.is_none() {
-            for _ in 0..self.clock.ticks_due(dt) {
-                let divergences = self.tick();
-                if let Some(first) = divergences.first() {
-                    self.fail(first, &divergences);
-                    break;
-                }
-            }
+            let due = self.clock.ticks_due(dt);
+            let ran = self.run_ticks(due);
+            self.clock.ran(ran, dt);
         }
         self.follow(dt.min(0.1), self.alpha());
+    }
+
+    /// Runs the ticks of a frame; returns how many. What does not fit into the time of a frame is dropped: a world that is too slow
+    /// falls behind, and the picture does not. A failure and the end of a replay end it early.
+    fn run_ticks(&mut self, due: u32) -> u32 {
+        let (start, was_paused) = (Instant::now(), self.clock.paused);
+        for tick in 1..=due {
+            let divergences = self.tick();
+            if let Some(first) = divergences.first() {
+                self.fail(first, &divergences);
+            }
+            let is_over = self.failure.is_some() || self.clock.paused != was_paused;
+            if is_over || start.elapsed() > TICKS_BUDGET {
+                return tick;
+            }
+        }
+        due
     }
 
     /// The camera takes `dt` seconds to follow the player, which is `alpha` of the way into the last tick.
@@ -40,12 +67,17 @@ impl App {
         let stick = self.layout.preferences.stick(input.right_stick);
         self.camera.advance(dt, stick, root, heading, ground);
         self.camera.follow_head(dt, self.head(alpha));
-        let hit = self
-            .camera
-            .line()
-            .and_then(|(from, line)| self.sim.shared_mut()?.hidden_at(from, line, line.length()));
+        let hit = self.camera.line().and_then(|(from, line)| self.hidden_at(from, line));
         self.camera.keep_clear(dt, hit);
         self.camera.fly(dt, self.keys.flight());
+    }
+
+    /// How far along the camera's line something hides the players, metres. They are looked through. With two of them the line begins
+    /// between them, where a wall may be: what is that near does not count.
+    fn hidden_at(&mut self, from: Vec3, line: Vec3) -> Option<f32> {
+        let players = 1 + usize::from(self.sim.has_second_player());
+        let hit = self.sim.shared_mut()?.hidden_at(from, line, line.length(), players)?;
+        (players == 1 || hit > BETWEEN_PLAYERS_M).then_some(hit)
     }
 
     /// One tick of the world. Characters whose physics diverged are in their state before it.
@@ -57,6 +89,9 @@ impl App {
         self.give_back_to_triggers(&input);
         self.sim.overrides.blend = self.layers.blend();
         let divergences = self.sim.tick(&input, camera);
+        self.keys.end_tick();
+        self.pad_taps.clear();
+        self.second_taps.clear();
         self.follow_replay(&input, camera);
         self.observe_first_steps(&input);
         self.note_refusal();
@@ -81,7 +116,8 @@ impl App {
 
     /// Tells of all divergences of a tick at once, in the words of the first.
     fn fail(&mut self, first: &Divergence, all: &[Divergence]) {
-        let path = std::env::temp_dir().join("policy-space-diverged.json");
+        let (process, number) = (std::process::id(), FAILURES.fetch_add(1, Ordering::Relaxed));
+        let path = std::env::temp_dir().join(format!("policy-space-diverged-{process}-{number}.json"));
         let saved = first.replay.as_ref().is_some_and(|replay| replay.save(&path).is_ok());
         let replay = saved.then(|| path.display().to_string());
         let mut what = format!("character {}: {}", first.character, first.what);

@@ -63,14 +63,10 @@ impl Plots {
         let times = sim.times();
         let policy = times.policy.as_secs_f32() * 1e3;
         self.policy.push(policy);
-        self.physics.push((times.whole.as_secs_f32() * 1e3 - policy).max(0.0));
+        // The controllers' time is that of all threads together.
+        let waited = policy / sim.control_threads() as f32;
+        self.physics.push((times.whole.as_secs_f32() * 1e3 - waited).max(0.0));
         self.speed.push(sim.player().speed());
         self.score.push(sim.player().report().skill.and_then(|s| s.score).unwrap_or(0.0));
-    }
-
-    /// Adds the times of a frame, milliseconds.
-    pub fn frame(&mut self, draw: f32, ui: f32) {
-        self.draw.push(draw);
-        self.ui.push(ui);
     }
 }

@@ -151,6 +151,15 @@ impl Simulation {
         self.times
     }
 
+    /// Threads that the controllers of a tick are spread over.
+    #[must_use]
+    pub fn control_threads(&self) -> usize {
+        match &self.bodies {
+            Bodies::Apart(crowd) => crowd.threads().min(self.steered.len()).max(1),
+            Bodies::Together(_) => 1,
+        }
+    }
+
     /// Sums over the whole run.
     #[must_use]
     pub fn totals(&self) -> &Totals {

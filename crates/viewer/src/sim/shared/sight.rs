@@ -11,14 +11,16 @@ const MOST_SEEN_THROUGH: usize = 8;
 const STEP_M: f32 = 0.02;
 
 impl SharedWorld {
-    /// Metres from a point in the player to the fixture, the ground or the other character that a line of `most` metres along
-    /// `direction` meets first; `None` when nothing hides it. Props are small and move on: they do not count.
-    pub fn hidden_at(&mut self, from: Vec3, direction: Vec3, most: f32) -> Option<f32> {
+    /// Metres from a point to the fixture, the ground or the character that a line of `most` metres along `direction` meets first;
+    /// `None` when nothing hides the point. The first `players` characters do not count, and neither do props: they are small and
+    /// move on.
+    pub fn hidden_at(&mut self, from: Vec3, direction: Vec3, most: f32, players: usize) -> Option<f32> {
         let along = direction.try_normalize()?;
         let mut gone = 0.0;
         for _ in 0..MOST_SEEN_THROUGH {
             let hit = self.world.ray(from + along * gone, along, most - gone, None).ok()??;
-            let player = matches!(hit.part, Part::Body(handle, _) if handle == self.characters[0]);
+            let steered = &self.characters[..players.min(self.characters.len())];
+            let player = matches!(hit.part, Part::Body(handle, _) if steered.contains(&handle));
             if !player && !matches!(hit.part, Part::Prop(_)) {
                 return Some(gone + hit.distance);
             }
