@@ -335,3 +335,22 @@ fn a_replay_repeats_the_run_and_stops_where_it_differs() {
     let both = run(folder.path(), &["--headless", "--replay", "walk.replay", "--physics", "mujoco"]);
     assert_eq!(both.status.code(), Some(2));
 }
+
+#[test]
+fn a_second_script_brings_the_playground_and_is_refused_where_nobody_can_join() {
+    let folder = tempfile::tempdir().unwrap();
+    std::fs::write(folder.path().join("b.ron"), "(entries: [(at: 0.1, left_stick: (0.0, 1.0))])").unwrap();
+    let start = ["--headless", "--second-script", "b.ron", "--seconds", "0.2"];
+    let joined = run(folder.path(), &[&start[..], &["--report", "a.json"]].concat());
+    assert!(joined.status.success(), "{}", String::from_utf8_lossy(&joined.stderr));
+    let report = std::fs::read_to_string(folder.path().join("a.json")).unwrap();
+    assert!(report.contains("\"scene\": \"playground\""), "{report}");
+    // What the window would have shown is on standard error.
+    let said = String::from_utf8_lossy(&joined.stderr).into_owned();
+    assert!(said.contains("A second player has joined"), "{said}");
+    for elsewhere in [["--scene", "empty"], ["--characters", "1"]] {
+        let refused = run(folder.path(), &[&start[..], &elsewhere].concat());
+        let said = String::from_utf8_lossy(&refused.stderr).into_owned();
+        assert!(!refused.status.success() && said.contains("--second-script needs"), "{said}");
+    }
+}

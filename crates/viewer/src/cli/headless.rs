@@ -94,6 +94,7 @@ impl<'a> Headless<'a> {
                 break;
             }
         }
+        run.app.toasts.take_text().iter().flat_map(|text| text.lines()).for_each(super::remark);
         replay_files::end(demo, &run.app)?;
         Ok(run)
     }

@@ -37,11 +37,11 @@ Examples:
   policy-space
       the playground in a window; F1 shows the controls, a gamepad is used when there is one
   policy-space --scene empty
-      the bare floor, for the method
+      an empty floor, to study the blending
   policy-space --headless --scene playground --script assets/scripts/walk.ron --seconds 8 --frames out/
       pictures of a walk into the crates of the playground
   policy-space --tour
-      the course of the playground by itself, until somebody presses a key
+      plays the playground's course automatically until you press a key
   policy-space --terrain wavy --characters 20
       twenty characters on low hills
   policy-space --headless --script assets/scripts/tour.ron --seconds 20 --report report.json --frames out/
@@ -53,7 +53,7 @@ Examples:
   policy-space --physics rapier --record-replay walk.replay
       keeps what is pressed; policy-space --replay walk.replay plays it, and compares the state every second
   policy-space --poses walk.json
-      a clip in a window, round and round; with --headless --frames out/ once, as pictures
+      plays a clip in a loop in a window; with --headless --frames out/ once, as pictures
 
 Exit status: 0 when it ran, 1 when it could not, 2 when the command line is wrong, 128 and the number of the
 signal when one ended it (130 after Ctrl+C); the report and the settings are written then too.";
@@ -97,7 +97,7 @@ pub struct Demo {
     /// Pad input of a second player over time (RON), who takes over a character of the playground.
     #[arg(long, value_name = "FILE", conflicts_with_all = ["replay", "poses", "record_replay"])]
     pub second_script: Option<PathBuf>,
-    /// Record what is pressed into this file: a replay, to be played on any machine.
+    /// Record the input into this file, as a replay. It plays back with the same program on the same machine.
     #[arg(long, value_name = "FILE")]
     pub record_replay: Option<PathBuf>,
     /// Play a replay. It brings scene, physics, ground, characters, blend mode and seed, and stops with an error at the
@@ -141,7 +141,7 @@ pub struct Demo {
     /// Draw the panels into the pictures, or those of a list such as --panels=paths,analysis.
     #[arg(long, requires = "frames", value_name = "LIST", num_args = 0..=1, require_equals = true, default_missing_value = "", value_parser = values::panels)]
     pub panels: Option<PanelList>,
-    /// Degrees by which pictures are taken from another side than the pad steers from.
+    /// Angle between the picture camera and the camera that the stick is relative to, degrees.
     #[arg(
         long,
         default_value_t = 35.0,
@@ -170,14 +170,15 @@ pub struct Demo {
     /// The physics engine: mujoco or rapier.
     #[arg(long, default_value = "mujoco", value_name = "ENGINE", value_parser = values::engine)]
     pub physics: Engine,
-    /// Walk beside a second character in the other engine, or under the blend mode or in the engine that is named.
+    /// Add a second character under the same input. WHAT is a blend mode or an engine; without it, the other engine.
     #[arg(long, value_name = "WHAT", num_args = 0..=1, default_missing_value = values::OTHER, value_parser = values::ghost)]
     pub ghost: Option<GhostChoice>,
     /// The ground: flat, wavy or steps.
     #[arg(long, default_value = "flat", value_parser = values::ground)]
     pub terrain: GroundKind,
     /// What stands on the floor: playground or empty. A window opens on the playground, unless another choice needs the
-    /// empty floor; a run without a window is on the empty floor.
+    /// empty floor; a run without a window is on the empty floor, unless it has a second
+    /// player.
     #[arg(long, value_parser = values::scene)]
     pub scene: Option<SceneKind>,
     /// All blend modes beside each other in a split screen, under the same stick on the empty floor, with falls counted.
@@ -204,8 +205,8 @@ pub struct Demo {
 }
 
 impl Demo {
-    /// What stands on the floor: what was asked for, or the playground in a window where no other choice needs the empty
-    /// floor.
+    /// What stands on the floor: what was asked for, or the playground for a second player and in a window where no other choice needs
+    /// the empty floor.
     #[must_use]
     pub fn scene(&self) -> SceneKind {
         let needs_empty = self.headless
@@ -215,6 +216,8 @@ impl Demo {
             || self.characters.is_some()
             || self.terrain != GroundKind::Flat
             || self.physics != Engine::Mujoco;
+        // A second player has a character in the playground only.
+        let needs_empty = needs_empty && self.second_script.is_none();
         self.scene.unwrap_or(if needs_empty { SceneKind::Empty } else { SceneKind::Playground })
     }
 }
