@@ -22,6 +22,12 @@ pub fn printable(text: &str, most: usize) -> String {
     shown
 }
 
+/// A name of a pack as it is shown: `idle_stop` reads `idle stop`.
+#[must_use]
+pub fn spaced(name: &str) -> String {
+    name.replace('_', " ")
+}
+
 /// A noun for so many things: `character` for one, `characters` for none or several.
 #[must_use]
 pub fn noun(number: u64, one: &str) -> String {

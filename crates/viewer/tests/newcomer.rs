@@ -133,7 +133,7 @@ fn settings_hold_at_once_and_go_back_to_the_defaults() {
     harness.run_steps(3);
     click(&mut harness, "low");
     click(&mut harness, "first person");
-    harness.get_by_role_and_label(Role::CheckBox, "Turn up and down over").click();
+    harness.get_by_role_and_label(Role::CheckBox, "Invert up and down").click();
     harness.run_steps(2);
     click(&mut harness, "125 %");
     harness.run_steps(2);

@@ -7,6 +7,7 @@ use policy_core::NodeId;
 use super::{PRESENT, REQUESTED, policy_colour};
 use crate::analysis::Analysis;
 use crate::app::App;
+use crate::text::spaced;
 
 const HEIGHT: f32 = 210.0;
 
@@ -97,7 +98,7 @@ fn parameters(ui: &Ui, orbit: &Orbit, app: &App, analysis: &Analysis) {
         painter.text(
             at + vec2(0.0, -8.0),
             Align2::CENTER_BOTTOM,
-            &node.name,
+            spaced(&node.name),
             FontId::proportional(11.0),
             text,
         );

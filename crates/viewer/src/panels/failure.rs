@@ -6,14 +6,20 @@ use super::WRONG;
 use crate::app::{Failure, ViewerCommand};
 
 pub(super) fn show(ui: &mut Ui, failure: &Failure, commands: &mut Vec<ViewerCommand>) {
-    let window = egui::Window::new("The simulation has stopped").collapsible(false).resizable(false);
+    let window = egui::Window::new("The physics became unstable").collapsible(false).resizable(false);
     window.anchor(egui::Align2::CENTER_CENTER, egui::Vec2::ZERO).show(ui.ctx(), |ui| {
         ui.colored_label(WRONG, &failure.what);
         if let Some(replay) = &failure.replay {
-            ui.label(format!("The state before it is in the replay file {replay}."));
+            ui.label(format!("The state before it was saved to {replay}."));
         }
         ui.horizontal(|ui| {
-            if ui.button("Rewind and continue").on_hover_text("From two seconds before it").clicked() {
+            if ui
+                .button("Rewind and continue")
+                .on_hover_text(
+                    "Goes back by two seconds where the engine keeps them; other characters stand up again",
+                )
+                .clicked()
+            {
                 commands.push(ViewerCommand::RewindAfterFailure);
             }
             if ui.button("Start again").on_hover_text("All characters back to the start").clicked() {

@@ -5,6 +5,7 @@ use policy_core::{Goal, NodeId, PolicyId};
 
 use super::{PRESENT, REQUESTED};
 use crate::app::{App, ViewerCommand};
+use crate::text::spaced;
 
 const HEIGHT: f32 = 190.0;
 const NODE: f32 = 9.0;
@@ -47,7 +48,7 @@ pub(super) fn show(ui: &mut Ui, app: &App, commands: &mut Vec<ViewerCommand>) {
         }
         let out = (at - rect.center()).normalized() * 18.0;
         let text = ui.visuals().text_color();
-        painter.text(at + out, Align2::CENTER_CENTER, &node.name, FontId::proportional(12.0), text);
+        painter.text(at + out, Align2::CENTER_CENTER, spaced(&node.name), FontId::proportional(12.0), text);
     }
     if running.is_none() {
         let position = report.position;
@@ -73,8 +74,8 @@ fn walk_to(ui: &mut Ui, app: &App, commands: &mut Vec<ViewerCommand>) {
     ui.horizontal_wrapped(|ui| {
         ui.label("Go to");
         for (id, node) in graph.originals() {
-            let told = format!("Blend over to {}, whatever the triggers say", node.name);
-            if ui.small_button(&node.name).on_hover_text(told).clicked() {
+            let told = format!("Blend over to {}, whatever the triggers say", spaced(&node.name));
+            if ui.small_button(spaced(&node.name)).on_hover_text(told).clicked() {
                 commands.push(ViewerCommand::Goal(Some(Goal::Node(id))));
             }
         }
@@ -83,7 +84,7 @@ fn walk_to(ui: &mut Ui, app: &App, commands: &mut Vec<ViewerCommand>) {
     let (from, to) = (report.position.nearest_node(), report.goal.nearest_node());
     let route = graph.routes().route(from, to);
     if route.len() > 1 {
-        let names: Vec<&str> = route.iter().map(|&n| graph.node(n).name.as_str()).collect();
+        let names: Vec<String> = route.iter().map(|&n| spaced(&graph.node(n).name)).collect();
         ui.weak(format!("{}, distance {:.1}", names.join(" > "), graph.routes().cost(from, to)));
     }
 }

@@ -4,11 +4,12 @@ use egui::{ComboBox, Slider, Ui};
 use policy_core::NodeId;
 
 use crate::app::{App, Layers, Preset, ViewerCommand};
+use crate::text::spaced;
 
 const NAMES: [&str; 3] = ["hidden 1", "hidden 2", "output"];
 
 pub(super) fn show(ui: &mut Ui, app: &App, commands: &mut Vec<ViewerCommand>) {
-    let mut layers = app.layers.clone();
+    let (mut layers, mut reset) = (app.layers.clone(), false);
     ui.checkbox(&mut layers.active, "Sliders instead of the triggers")
         .on_hover_text("The sliders below say what is blended, until a trigger is pulled");
     ui.horizontal(|ui| {
@@ -18,9 +19,7 @@ pub(super) fn show(ui: &mut Ui, app: &App, commands: &mut Vec<ViewerCommand>) {
     ui.horizontal(|ui| {
         ui.radio_value(&mut layers.automatic, true, "Automatic").on_hover_text("One slider for all layers");
         ui.radio_value(&mut layers.automatic, false, "Manual").on_hover_text("One slider for each layer");
-        if ui.button("Reset layers").on_hover_text("All sliders to 0 %").clicked() {
-            layers.t = [0.0; 3];
-        }
+        reset = ui.button("Reset layers").on_hover_text("All sliders to 0 %").clicked();
     });
     if layers.automatic {
         share(ui, &mut layers.t[0], "all layers");
@@ -30,8 +29,11 @@ pub(super) fn show(ui: &mut Ui, app: &App, commands: &mut Vec<ViewerCommand>) {
         }
     }
     presets(ui, app, &mut layers, commands);
-    // Moving a slider switches the sliders on.
+    // Moving a slider switches the sliders on; putting them back does not.
     layers.active |= layers.t != app.layers.t;
+    if reset {
+        layers.t = [0.0; 3];
+    }
     if layers != app.layers {
         commands.push(ViewerCommand::Layers(layers));
     }
@@ -47,11 +49,11 @@ fn share(ui: &mut Ui, t: &mut f32, name: &str) {
 
 fn policy(ui: &mut Ui, app: &App, label: &str, chosen: &mut NodeId) {
     let nodes = app.sim.pack().graph().nodes();
-    let list = ComboBox::new(label, label).width(80.0).selected_text(&nodes[chosen.index()].name);
+    let list = ComboBox::new(label, label).width(80.0).selected_text(spaced(&nodes[chosen.index()].name));
     let list = list.show_ui(ui, |ui| {
         for (index, node) in nodes.iter().enumerate() {
-            ui.selectable_value(chosen, NodeId::new(index), &node.name)
-                .on_hover_text(format!("The slider's end is {}", node.name));
+            ui.selectable_value(chosen, NodeId::new(index), spaced(&node.name))
+                .on_hover_text(format!("The slider's end is {}", spaced(&node.name)));
         }
     });
     list.response.on_hover_text("The policy at this end of the sliders");

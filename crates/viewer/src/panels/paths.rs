@@ -7,6 +7,7 @@ use policy_core::{Goal, PathId};
 
 use super::{PRESENT, REQUESTED};
 use crate::app::{App, ViewerCommand};
+use crate::text::spaced;
 
 const HEIGHT: f32 = 46.0;
 const MARGIN: f32 = 22.0;
@@ -26,7 +27,7 @@ pub(super) fn show(ui: &mut Ui, app: &App, commands: &mut Vec<ViewerCommand>) {
         ui.colored_label(REQUESTED, "asked for");
         ui.colored_label(PRESENT, "now");
         let back = ui.add_enabled(overridden, egui::Button::new("Back to the triggers"));
-        let told = "The triggers say again where to go. Pulling one does the same.";
+        let told = "Lets the triggers decide again. Pulling one does the same.";
         if back.on_hover_text(told).on_disabled_hover_text(told).clicked() {
             commands.push(ViewerCommand::Goal(None));
         }
@@ -83,9 +84,8 @@ fn draw(ui: &Ui, app: &App, path: &Path, place: &impl Fn(f32) -> Pos2) {
     for (i, &node) in path.nodes().iter().enumerate() {
         let at = place(i as f32);
         painter.circle(at, 5.0, ui.visuals().extreme_bg_color, Stroke::new(1.5, ui.visuals().text_color()));
-        let name = &app.sim.pack().graph().node(node).name;
-        let label =
-            painter.layout_no_wrap(name.clone(), FontId::proportional(12.0), ui.visuals().text_color());
+        let name = spaced(&app.sim.pack().graph().node(node).name);
+        let label = painter.layout_no_wrap(name, FontId::proportional(12.0), ui.visuals().text_color());
         // Centred, but a long name at an end stays inside the panel.
         let inside = ui.max_rect();
         let most = (inside.right() - label.size().x).max(inside.left());

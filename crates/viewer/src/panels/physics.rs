@@ -39,7 +39,7 @@ pub(super) fn show(ui: &mut Ui, app: &App, commands: &mut Vec<ViewerCommand>) {
 
 /// What is greyed in the playground, and why.
 const ONLY_EMPTY: &str = "On the empty floor only: the playground is flat, in MuJoCo, and without ghosts.";
-const NO_MASS: &str = "On the empty floor only: a shared world keeps the masses of its characters.";
+const NO_MASS: &str = "In the playground masses can't be changed.";
 
 /// What stands on the floor.
 fn scene(ui: &mut Ui, app: &App, commands: &mut Vec<ViewerCommand>) {

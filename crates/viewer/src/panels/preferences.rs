@@ -43,7 +43,7 @@ pub(super) fn show(ui: &Ui, app: &App, commands: &mut Vec<ViewerCommand>) {
 fn screen(ui: &mut Ui, chosen: &mut Preferences) {
     ui.strong("Screen");
     ui.horizontal_wrapped(|ui| {
-        ui.label("Size of texts");
+        ui.label("Text size");
         for scale in Preferences::UI_SCALES {
             let label = ui.selectable_label(chosen.ui_scale == scale, format!("{:.0} %", 100.0 * scale));
             if label.on_hover_text("Size of all texts and buttons").clicked() {
@@ -105,7 +105,7 @@ fn camera(ui: &mut Ui, app: &App, chosen: &mut Preferences, commands: &mut Vec<V
         .on_hover_text("How far the camera turns with the mouse");
     ui.add(slider(&mut chosen.stick_sensitivity).text("right stick"))
         .on_hover_text("How fast the camera turns with the right stick and I O U L");
-    ui.checkbox(&mut chosen.inverts_y, "Turn up and down over")
+    ui.checkbox(&mut chosen.inverts_y, "Invert up and down")
         .on_hover_text("Pushing the stick or the mouse up looks down");
     ui.add_space(8.0);
 }
@@ -128,7 +128,7 @@ pub(super) fn camera_modes(ui: &mut Ui, app: &App, commands: &mut Vec<ViewerComm
 
 fn start(ui: &mut Ui, chosen: &mut Preferences, commands: &mut Vec<ViewerCommand>) {
     ui.strong("Start");
-    ui.checkbox(&mut chosen.plays_tour, "Tour without input")
+    ui.checkbox(&mut chosen.plays_tour, "Play the tour when idle")
         .on_hover_text("After 45 seconds without any input the demo shows what the character can do");
     if ui.button("Show the first steps again").on_hover_text("The list of things to try first").clicked() {
         commands.push(ViewerCommand::RepeatFirstSteps);

@@ -15,7 +15,7 @@ pub(super) fn show(ui: &Ui, app: &App, free: egui::Rect) {
     let (state, colour) = match race.state() {
         RaceState::Waiting => ("Walk through the lit ring to start the clock".to_owned(), PRESENT),
         RaceState::Running => (format!("Checkpoint {} of {count}", race.next() + 1), REQUESTED),
-        RaceState::Finished => ("Finished; the first ring starts again".to_owned(), PRESENT),
+        RaceState::Finished => ("Finished! Walk through the first ring to race again".to_owned(), PRESENT),
     };
     let at = free.center_top() + egui::vec2(0.0, 8.0);
     let area = Area::new(egui::Id::unique("race")).fixed_pos(at).pivot(Align2::CENTER_TOP);

@@ -9,6 +9,7 @@ use policy_core::{Button, GamepadState, PolicyId};
 use super::{PRESENT, frame, policy_colour};
 use crate::app::{App, FirstStep, KeyAction};
 use crate::sim::SHOVE_BUTTON;
+use crate::text::spaced;
 
 /// Height of the bar of weights, points.
 const BAR_HEIGHT: f32 = 20.0;
@@ -36,7 +37,8 @@ pub(super) fn show(ui: &mut Ui, app: &App) {
             for cap in caps(app) {
                 draw_cap(ui, &cap, gap);
             }
-            ui.weak(if app.clock.paused { "paused" } else { app.refused().unwrap_or_default() });
+            let (state, refused) = (app.clock.state(), app.refused().unwrap_or_default());
+            ui.weak(format!("{state}  {refused}").trim());
         });
     });
 }
@@ -66,7 +68,7 @@ fn blend_bar(ui: &mut Ui, app: &App) {
         );
         ui.painter().rect_filled(part, corners, policy_colour(policy.index()).gamma_multiply(0.75));
         if part.width() > NAMED_WIDTH {
-            let text = format!("{name} {:.0} %", 100.0 * share);
+            let text = format!("{} {:.0} %", spaced(name), 100.0 * share);
             let font = FontId::proportional(13.0);
             ui.painter().with_clip_rect(part).text(
                 part.center(),
@@ -112,7 +114,7 @@ fn caps(app: &App) -> Vec<Cap> {
     let (input, pack) = (app.input(), app.sim.pack());
     let keys = &app.layout.preferences.keys;
     let key = |action| keys.key(action).name().to_owned();
-    let on_pad = app.pad.name.is_some();
+    let on_pad = app.uses_pad();
     let named = |pad: &str, keys: String| if on_pad { pad.to_owned() } else { keys };
     let pressed = |button: Button| input.buttons.contains(button);
     let cap = |key: String, action: &'static str, told: &'static str, pressed: bool| Cap {

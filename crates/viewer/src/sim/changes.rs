@@ -107,8 +107,7 @@ impl Simulation {
     pub fn start_ghost(&mut self, kind: GhostKind) -> Result<(), SimError> {
         let Bodies::Apart(crowd) = &self.bodies else {
             return Err(SimError::NotInPlayground {
-                needs: "a character without a ghost",
-                found: "room for one",
+                said: "Ghosts need the empty floor: choose Scene \"empty\" in Physics.",
             });
         };
         self.ghost = Ghost::of(crowd.character(0), &self.steered[0], kind)?;

@@ -25,12 +25,10 @@ pub enum SimError {
     #[error(transparent)]
     Scene(Box<SceneFileError>),
     /// What the playground is not for.
-    #[error("expected {needs} for the playground: the empty floor has {found}")]
+    #[error("{said}")]
     NotInPlayground {
-        /// What it needs.
-        needs: &'static str,
-        /// What was asked for.
-        found: &'static str,
+        /// What it is for, or where the other thing is.
+        said: &'static str,
     },
     /// Too many or too few characters for the playground.
     #[error("expected 1 to {most} characters in the playground, found {found}")]

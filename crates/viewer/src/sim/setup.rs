@@ -262,10 +262,10 @@ fn apart(model: &Model, config: SimConfig) -> Result<Bodies, SimError> {
 /// Characters in the world of the playground.
 fn together(model: &Model, config: SimConfig) -> Result<Bodies, SimError> {
     if config.engine != Engine::Mujoco {
-        return Err(SimError::NotInPlayground { needs: "MuJoCo", found: "Rapier too" });
+        return Err(SimError::NotInPlayground { said: "The playground runs in MuJoCo only." });
     }
     if config.ground != GroundKind::Flat {
-        return Err(SimError::NotInPlayground { needs: "flat ground", found: "hills and steps" });
+        return Err(SimError::NotInPlayground { said: "The playground is on flat ground only." });
     }
     let scene = Playground::shipped()?;
     let shared = SharedWorld::new(scene, model.described(), config.characters, config.seed, config.history)?;
