@@ -11,6 +11,7 @@ use policy_core::glam::Vec3;
 use policy_core::{BodyId, CharacterState, Command, Controller, Heading};
 use rapier3d::pipeline::PhysicsWorld;
 
+use crate::articulation::pose::check_pose;
 use crate::articulation::{Articulation, Drive, PlaceError, Sets};
 use crate::model::Model;
 
@@ -186,10 +187,10 @@ impl Character {
     /// world anew, so equal poses have equal futures. Allocates.
     ///
     /// # Errors
-    /// When there are more or fewer numbers than the character has, a number is not finite or the quaternion is no
-    /// rotation; the character is then unchanged.
+    /// When there are more or fewer numbers than the character has, a number is not finite in single precision or the
+    /// quaternion is no rotation; the character is then unchanged.
     pub fn set_pose(&mut self, qpos: &[f64], qvel: &[f64]) -> Result<(), PoseError> {
-        Pose::check(qpos, qvel, self.model().skeleton().joint_count())?;
+        check_pose(qpos, qvel, self.model().skeleton().joint_count())?;
         self.restart(qpos, qvel);
         self.tick = 0;
         self.pushes.clear();

@@ -296,3 +296,24 @@ fn rotations_stay_rotations() {
         assert!((length - 1.0).abs() < 1e-4, "{length} after {} ticks", character.tick());
     }
 }
+
+/// A slow turn lengthens the quaternion by the same bits in every step, for hours.
+#[test]
+fn a_slow_sway_for_minutes_leaves_its_rotation_a_unit_quaternion() {
+    let weightless = policy_core::contract::Settings { gravity: 0.0, ..Default::default() };
+    let model = crane().with_settings(weightless).unwrap();
+    let mut character = Character::new(&model);
+    at_height(&mut character, 2.0);
+    let mut pose = character.pose();
+    pose.qvel[3..6].copy_from_slice(&[0.02, 0.02, 0.028]);
+    character.set_pose(&pose.qpos, &pose.qvel).unwrap();
+    for tick in 0..1500 {
+        character.step().unwrap();
+        let root = character.articulation().bodies()[0];
+        let length = character.world().bodies[root].rotation().length();
+        assert!((length - 1.0).abs() < 1e-5, "{length} after {tick} ticks");
+    }
+    assert!(character.pose().qvel[3..6].iter().map(|w| w * w).sum::<f64>().sqrt() > 0.03, "it still turns");
+    character.set_model(&model).unwrap();
+    character.step().unwrap();
+}

@@ -3,8 +3,9 @@
 use rapier3d::dynamics::{
     IntegrationParameters, JointAxesMask, JointAxis, MultibodyJointSet, RigidBodySet, SpringCoefficients,
 };
-use rapier3d::math::Vector;
+use rapier3d::math::{Pose as RapierPose, Vector};
 
+use super::pose::unit;
 use super::{Articulation, Drive, Removed};
 
 /// A limit farther than this from the angle gets no row in the solver: radians, and seconds of the hinge's velocity.
@@ -58,7 +59,8 @@ impl Articulation {
 
     /// Writes torques, or motor targets, to Rapier. Call it before each physics step; with [`Drive::Motors`] once
     /// after each [`Articulation::actuate`] suffices. Replaces the forces and torques that act on the bodies of the
-    /// character. Allocates nothing of its own.
+    /// character. Makes the root's rotation a unit quaternion again when it has drifted: Rapier never does, and a
+    /// character that turns slowly would stretch without bound. Allocates nothing of its own.
     ///
     /// # Errors
     /// When the game removed a body or joint of the character.
@@ -68,6 +70,13 @@ impl Articulation {
         joints: &mut MultibodyJointSet,
     ) -> Result<(), Removed> {
         self.multibody(joints)?;
+        let root = self.bodies[0];
+        let body = bodies.get_mut(root).ok_or_else(|| self.removed_body(root))?;
+        let place = *body.position();
+        let rotation = unit(place.rotation);
+        if rotation != place.rotation {
+            body.set_position(RapierPose::from_parts(place.translation, rotation), false);
+        }
         let (multibody, _) = joints.get_mut(self.joint).expect("looked up above");
         match self.drive {
             Drive::Motors => {

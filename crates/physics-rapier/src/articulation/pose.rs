@@ -8,6 +8,28 @@ use rapier3d::math::{Pose as RapierPose, Rotation, Vector};
 
 use super::{Articulation, Removed, Sets};
 
+/// How far the square of a rotation's length may be from 1 before it is made a unit quaternion again.
+///
+/// Rounding alone stays below it for about a minute, so short runs keep their bits.
+const MOST_DRIFT: f32 = 1e-5;
+
+/// A rotation of length 1, or the same bits when its length is near enough.
+pub(super) fn unit(rotation: Rotation) -> Rotation {
+    let drift = (rotation.length_squared() - 1.0).abs();
+    if drift > MOST_DRIFT { rotation.normalize() } else { rotation }
+}
+
+/// Checks a pose as [`Pose::check`], and that single precision can hold its numbers.
+pub(crate) fn check_pose(qpos: &[f64], qvel: &[f64], joints: usize) -> Result<(), PoseError> {
+    Pose::check(qpos, qvel, joints)?;
+    for (field, numbers) in [("qpos", qpos), ("qvel", qvel)] {
+        if let Some(index) = numbers.iter().position(|&number| !(number as f32).is_finite()) {
+            return Err(PoseError::NotFinite { field, index, found: numbers[index] });
+        }
+    }
+    Ok(())
+}
+
 /// Why a character can't be posed in a world.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
@@ -25,10 +47,10 @@ impl Articulation {
     /// [`Articulation::actuate`] is called.
     ///
     /// # Errors
-    /// When there are more or fewer numbers than the character has, a number is not finite, the quaternion is no
-    /// rotation, or the game removed a part of the character; it is then unchanged.
+    /// When there are more or fewer numbers than the character has, a number is not finite in single precision, the
+    /// quaternion is no rotation, or the game removed a part of the character; it is then unchanged.
     pub fn set_pose(&mut self, world: &mut Sets<'_>, qpos: &[f64], qvel: &[f64]) -> Result<(), PlaceError> {
-        Pose::check(qpos, qvel, self.hinges.len())?;
+        check_pose(qpos, qvel, self.hinges.len())?;
         self.multibody(world.multibody_joints)?;
         let rotation =
             Rotation::from_xyzw(qpos[4] as f32, qpos[5] as f32, qpos[6] as f32, qpos[3] as f32).normalize();

@@ -4,6 +4,7 @@ use policy_core::{BodyState, CharacterState};
 use rapier3d::dynamics::{Multibody, MultibodyJointSet, RigidBodySet};
 use rapier3d::math::Vector;
 
+use super::pose::unit;
 use super::{Articulation, Removed};
 
 impl Articulation {
@@ -67,12 +68,13 @@ impl Articulation {
     /// Motion of the root in the MJCF's frame. Rapier's is at the centre of mass.
     pub(super) fn root_state(&self, multibody: &Multibody, pose: &rapier3d::math::Pose) -> BodyState {
         let velocity = multibody.generalized_velocity();
-        let offset = pose.rotation * self.model.root_offset();
+        let rotation = unit(pose.rotation);
+        let offset = rotation * self.model.root_offset();
         let angular = Vector::new(velocity[3], velocity[4], velocity[5]);
         let linear = Vector::new(velocity[0], velocity[1], velocity[2]) - angular.cross(offset);
         BodyState {
             position: pose.translation - offset,
-            rotation: pose.rotation,
+            rotation,
             linear_velocity: linear,
             angular_velocity: angular,
         }
