@@ -89,7 +89,7 @@ impl Model {
     ///
     /// # Errors
     /// When the text is no valid MJCF, names other files, or is no character: one body that floats and carries all
-    /// others, every other joint a limited hinge with a position servo that has a symmetric `forcerange` and no
+    /// others, at least one geom, every other joint a limited hinge with a position servo that has a symmetric `forcerange` and no
     /// `kv`, a `timestep` that divides the control period.
     pub fn from_mjcf(mjcf: &str) -> Result<Self, ModelError> {
         Self::load(mjcf, None, CONTROL_HZ as f32)
@@ -135,6 +135,9 @@ impl Model {
             None => Arc::new(skeleton::derive(&robot, &description)?),
         };
         let places = skeleton::places(&skeleton, &robot, &description)?;
+        if places.bodies.iter().all(|&place| robot.bodies[place].colliders.is_empty()) {
+            return Err(ModelError::NoGeoms);
+        }
         let motors = actuation::motors(&robot, &skeleton, &places)?;
         let timestep_secs = description.option.timestep;
         let substeps = actuation::substeps(control_hz, timestep_secs)?;

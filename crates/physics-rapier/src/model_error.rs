@@ -82,6 +82,9 @@ pub enum ModelError {
         /// What is wrong with it.
         source: SkeletonError,
     },
+    /// No body has a geom, so nothing could stand on the ground.
+    #[error("expected a geom on at least one body of the character, found none")]
+    NoGeoms,
     /// The time step does not divide a control tick.
     #[error("expected a timestep that divides 1/{control_hz} s, found {timestep_secs} s")]
     Timestep {

@@ -21,7 +21,7 @@ pub(crate) struct Places {
 }
 
 /// Derives the skeleton. Bodies come in the order of the MJCF, the root first; hinges in the order of their motors.
-/// Names tell the roles: `head`, `hand`, `foot` or `feet`.
+/// Names tell the roles, in capitals or not: `head`, `hand`, `foot` or `feet`.
 pub(crate) fn derive(robot: &MjcfRobot, description: &Description) -> Result<Skeleton, ModelError> {
     let root = root(robot)?;
     let mut ids: Vec<Option<BodyId>> = vec![None; description.bodies.len()];
@@ -164,7 +164,10 @@ fn range(joint: &Joint) -> Result<[f32; 2], ModelError> {
 
 fn roles(bodies: &[SkeletonBody]) -> Roles {
     let named = |words: &[&str]| -> Vec<BodyId> {
-        let has = |body: &SkeletonBody| words.iter().any(|word| body.name.contains(word));
+        let has = |body: &SkeletonBody| {
+            let name = body.name.to_ascii_lowercase();
+            words.iter().any(|word| name.contains(word))
+        };
         (0..bodies.len()).filter(|&i| has(&bodies[i])).map(BodyId::new).collect()
     };
     Roles { head: named(&["head"]).first().copied(), hands: named(&["hand"]), feet: named(&["foot", "feet"]) }

@@ -108,6 +108,15 @@ fn bad_poses_pushes_and_targets_change_nothing() {
     bad.qpos[3] = 0.1;
     let error = character.set_pose(&bad.qpos, &bad.qvel).unwrap_err();
     assert!(matches!(error, PoseError::Quaternion { .. }), "{error}");
+    // Finite, but too large for single precision.
+    bad = pose.clone();
+    bad.qpos[1] = 1e39;
+    let error = character.set_pose(&bad.qpos, &bad.qvel).unwrap_err();
+    assert_eq!(error, PoseError::NotFinite { field: "qpos", index: 1, found: 1e39 });
+    bad = pose.clone();
+    bad.qvel[8] = -1e300;
+    let error = character.set_pose(&bad.qpos, &bad.qvel).unwrap_err();
+    assert_eq!(error, PoseError::NotFinite { field: "qvel", index: 8, found: -1e300 });
     assert!(character.stand_at(f32::INFINITY, 0.0, Heading::FORWARD, 0.0).is_err());
     assert_eq!(character.pose(), pose);
 
@@ -167,6 +176,29 @@ fn a_wrong_mjcf_is_refused_with_its_part() {
     for text in deep.into_iter().chain([String::new(), " ".repeat(2 << 20), "<mujoco/>".into()]) {
         assert!(Model::from_mjcf(&text).is_err());
     }
+}
+
+#[test]
+fn a_character_without_geoms_is_refused() {
+    let mut bare = String::new();
+    for line in CRANE.lines().filter(|line| !line.contains("<geom") || line.contains("plane")) {
+        bare.push_str(&line.replace("</body>", ""));
+        bare.push_str(if line.contains("</body>") {
+            "<inertial pos='0 0 0' mass='1' diaginertia='1 1 1'/></body>\n"
+        } else {
+            "\n"
+        });
+    }
+    let error = Model::from_mjcf(&bare).unwrap_err();
+    assert!(matches!(error, ModelError::NoGeoms), "{error}");
+}
+
+#[test]
+fn names_tell_the_roles_in_capitals_too() {
+    let named = |hook, plate| CRANE.replace("\"hook\"", hook).replace("\"plate\"", plate);
+    let model = Model::from_mjcf(&named("\"LeftHand\"", "\"Foot_R\"")).unwrap();
+    let roles = model.skeleton().roles();
+    assert_eq!((roles.hands.len(), roles.feet.len()), (1, 1), "{roles:?}");
 }
 
 #[test]
