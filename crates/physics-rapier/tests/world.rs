@@ -2,8 +2,8 @@
 
 mod common;
 
-use common::humanoid;
-use physics_rapier::{Fixture, FixtureShape, Joint, Motion, Prop, Solid, World, WorldError};
+use common::{CRANE, humanoid};
+use physics_rapier::{Fixture, FixtureShape, Joint, Model, Motion, Prop, Solid, World, WorldError};
 use policy_core::CharacterState;
 use policy_core::glam::{Quat, Vec2, Vec3};
 
@@ -108,6 +108,41 @@ fn triangles_and_heights_are_ground_too() {
         let found = world.ground_below(Vec3::new(x, y, 5.0));
         assert!((found - height).abs() < 0.01, "{x} {y}: {found}");
     }
+}
+
+#[test]
+fn a_prop_slides_smoothly_over_the_edges_between_triangles() {
+    let side = 24_u32;
+    let corner = |i: u32| Vec3::new((i % side) as f32 * 0.25 - 3.0, (i / side) as f32 * 0.25 - 3.0, 0.3);
+    let squares = (0..(side - 1) * (side - 1)).map(|i| i / (side - 1) * side + i % (side - 1));
+    let triangles: Vec<[u32; 3]> =
+        squares.flat_map(|i| [[i, i + 1, i + side], [i + 1, i + side + 1, i + side]]).collect();
+    let points: Vec<Vec3> = (0..side * side).map(corner).collect();
+    let shape = FixtureShape::Triangles { points: points.into(), triangles: triangles.into() };
+    let place = Fixture::new(Solid::Sphere { radius: 1.0 }, Vec3::ZERO);
+    let mut world = World::new(&humanoid());
+    world.add_fixture(&Fixture { shape, friction: 0.0, ..place }).unwrap();
+    let cube = Prop { friction: 0.0, ..Prop::cube(0.2, 3.0) };
+    let start = Motion::at(Vec3::new(-2.5, 0.1, 0.4)).moving(Vec3::new(1.5, 0.4, 0.0));
+    let prop = world.add_prop(&cube, &start).unwrap();
+    for tick in 0..75 {
+        world.step();
+        let (_, motion) = world.prop(prop).unwrap();
+        let lift = motion.position.z - 0.4;
+        assert!(lift.abs() < 0.01, "lifted by {lift} m in tick {tick}");
+        assert!(motion.spin.length() < 0.1, "turned by an edge in tick {tick}: {}", motion.spin);
+        assert!((motion.velocity.truncate() - Vec2::new(1.5, 0.4)).length() < 0.05, "{}", motion.velocity);
+    }
+}
+
+#[test]
+fn a_prop_on_ground_that_is_deep_down_is_not_lost() {
+    let deep = CRANE.replace(r#"pos="0 0 0.2""#, r#"pos="0 0 -30""#);
+    let mut world = World::new(&Model::from_mjcf(&deep).unwrap());
+    let prop = world.add_prop(&Prop::cube(0.4, 5.0), &Motion::at(Vec3::new(1.0, 1.0, -29.8))).unwrap();
+    assert_eq!(world.reset_lost_props(), 0);
+    world.add_prop(&Prop::cube(0.4, 5.0), &Motion::at(Vec3::new(3.0, 1.0, -34.0))).unwrap();
+    assert_eq!((world.reset_lost_props(), at(&world, prop).z), (1, -29.8));
 }
 
 /// A door of 1 m that stands ajar about a hinge, and what it does under a push across it of so many newtons for a second.

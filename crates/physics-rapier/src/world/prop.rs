@@ -84,7 +84,7 @@ impl World {
                 && velocity.is_finite()
                 && body.angvel().is_finite()
                 && at.length() <= MAX_DISTANCE_M
-                && at.z >= -MAX_DEPTH_M
+                && at.z >= self.model.height_at(at.x, at.y) - MAX_DEPTH_M
                 && velocity.length() <= MAX_SPEED_MPS;
             if !sound {
                 body.set_position(prop.start, true);

@@ -4,7 +4,7 @@ use policy_core::contract::{Fixture, FixtureShape, Solid};
 use rapier3d::dynamics::CoefficientCombineRule;
 use rapier3d::geometry::{Array2, ColliderBuilder};
 use rapier3d::math::{Pose, Rotation, Vector};
-use rapier3d::parry::shape::HeightFieldFlags;
+use rapier3d::parry::shape::{HeightFieldFlags, TriMeshFlags};
 
 use super::WorldError;
 
@@ -27,7 +27,10 @@ pub(super) fn of_fixture(fixture: &Fixture) -> Result<ColliderBuilder, WorldErro
     let collider = match &fixture.shape {
         FixtureShape::Solid(solid) => of_solid(solid)?,
         FixtureShape::Triangles { points, triangles } => {
-            ColliderBuilder::trimesh(points.to_vec(), triangles.to_vec()).map_err(|_| WorldError::Hull)?
+            // Without the flag a foot that slides over an edge between two triangles stumbles over it.
+            let flags = TriMeshFlags::FIX_INTERNAL_EDGES;
+            ColliderBuilder::trimesh_with_flags(points.to_vec(), triangles.to_vec(), flags)
+                .map_err(|_| WorldError::Hull)?
         }
         FixtureShape::Heights { rows, columns, half_extents, heights } => {
             of_heights([*rows, *columns], half_extents.to_array(), heights)
