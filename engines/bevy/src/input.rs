@@ -4,9 +4,12 @@
 //! Q another style, E roll, Space get up, F jump, G punch.
 
 use core::hash::Hash;
+use std::sync::Arc;
 
 use bevy::prelude::*;
-use policy_core::{Bindings, Button, CommandMapper, GamepadState, Heading};
+use policy_core::{
+    Bindings, Button, CharacterPack, CharacterState, Command, CommandMapper, GamepadState, Heading,
+};
 
 use crate::axes;
 use crate::character::{CharacterCommand, CharacterGoal, PolicyController};
@@ -16,17 +19,51 @@ use crate::character::{CharacterCommand, CharacterGoal, PolicyController};
 #[reflect(Component, Default)]
 pub struct PlayerInput {
     /// The gamepad; `None` for all of them and the keyboard.
+    #[entities]
     pub gamepad: Option<Entity>,
     /// The camera that "ahead" is meant for; `None`: ahead is -z.
+    #[entities]
     pub camera: Option<Entity>,
-    /// Which control does what; used when the character gets its controller.
+    /// Which control does what.
     #[reflect(ignore)]
     pub bindings: Bindings,
 }
 
-/// The mapper of a player.
+/// The mapper of a player, and what it was made of: its ids are those of the pack.
 #[derive(Component)]
-struct PlayerMapper(CommandMapper);
+struct PlayerMapper {
+    mapper: CommandMapper,
+    pack: Arc<CharacterPack>,
+    bindings: Bindings,
+    /// What the pad was like last, so that a new mapper takes no held button for one just pressed.
+    last: GamepadState,
+}
+
+impl PlayerMapper {
+    fn new(pack: &Arc<CharacterPack>, bindings: &Bindings) -> Self {
+        Self {
+            mapper: CommandMapper::new(pack, bindings),
+            pack: Arc::clone(pack),
+            bindings: bindings.clone(),
+            last: GamepadState::default(),
+        }
+    }
+
+    /// Makes the mapper anew when the pack or the bindings are others.
+    fn follow(&mut self, pack: &Arc<CharacterPack>, bindings: &Bindings, state: &CharacterState) {
+        if Arc::ptr_eq(&self.pack, pack) && self.bindings == *bindings {
+            return;
+        }
+        let last = self.last;
+        *self = Self::new(pack, bindings);
+        self.map(&last, Heading::FORWARD, state);
+    }
+
+    fn map(&mut self, pad: &GamepadState, ahead: Heading, state: &CharacterState) -> Command {
+        self.last = *pad;
+        self.mapper.map(pad, ahead, state)
+    }
+}
 
 /// Turns gamepads and keys into commands of characters with a [`PlayerInput`].
 #[derive(Clone, Copy, Debug, Default)]
@@ -34,7 +71,7 @@ pub struct PolicyInputPlugin;
 
 impl Plugin for PolicyInputPlugin {
     fn build(&self, app: &mut App) {
-        app.register_type::<PlayerInput>().add_systems(
+        app.register_type::<PlayerInput>().add_observer(forget).add_systems(
             RunFixedMainLoop,
             (make_mappers, command).chain().in_set(RunFixedMainLoopSystems::BeforeFixedMainLoop),
         );
@@ -43,22 +80,32 @@ impl Plugin for PolicyInputPlugin {
 
 fn make_mappers(
     mut commands: Commands,
-    players: Query<
-        (Entity, &PlayerInput, &PolicyController),
-        Or<(Without<PlayerMapper>, Changed<PlayerInput>)>,
-    >,
+    mut players: Query<(Entity, Ref<PlayerInput>, &PolicyController, Option<&mut PlayerMapper>)>,
 ) {
-    for (entity, input, controller) in &players {
-        let mapper = CommandMapper::new(controller.controller.pack(), &input.bindings);
-        commands.entity(entity).insert(PlayerMapper(mapper));
+    for (entity, input, controller, mapper) in &mut players {
+        let pack = controller.controller.pack();
+        match mapper {
+            None => {
+                commands.entity(entity).try_insert(PlayerMapper::new(pack, &input.bindings));
+            }
+            Some(mut mapper) if input.is_changed() || !Arc::ptr_eq(&mapper.pack, pack) => {
+                mapper.follow(pack, &input.bindings, &controller.sensed);
+            }
+            Some(_) => {}
+        }
     }
+}
+
+/// The mapper leaves with the controller.
+fn forget(removed: On<Remove<PolicyController>>, mut commands: Commands) {
+    commands.entity(removed.entity).try_remove::<PlayerMapper>();
 }
 
 fn command(
     mut players: Query<(&PlayerInput, &mut PlayerMapper, &PolicyController, &mut CharacterCommand)>,
     gamepads: Query<(Entity, &Gamepad)>,
     keys: Option<Res<ButtonInput<KeyCode>>>,
-    cameras: Query<&Transform, Without<PlayerInput>>,
+    places: TransformHelper,
 ) {
     for (input, mut mapper, controller, mut command) in &mut players {
         let mut pad = GamepadState::default();
@@ -70,17 +117,18 @@ fn command(
         if let (None, Some(keys)) = (input.gamepad, &keys) {
             add_keys(&mut pad, keys);
         }
-        let camera = input.camera.and_then(|camera| cameras.get(camera).ok());
+        // Of this frame, with what the camera is a child of.
+        let camera = input.camera.and_then(|camera| places.compute_global_transform(camera).ok());
         let ahead = camera.map_or(Heading::from_angle(core::f32::consts::FRAC_PI_2), |camera| {
-            axes::heading_from_bevy(camera.rotation)
+            axes::heading_from_bevy(camera.rotation())
         });
-        let wanted = mapper.0.map(&pad, ahead, &controller.sensed);
+        let wanted = mapper.map(&pad, ahead, &controller.sensed);
         let ground = controller.sensed.ground_height;
         command.target = wanted.target.map(|target| axes::to_bevy(target.extend(ground)));
         command.facing = wanted.facing.map(|facing| axes::to_bevy(facing.extend(0.0)));
         command.goal = CharacterGoal::Ids(wanted.goal);
-        if let Some(skill) = wanted.skill {
-            command.skill = Some(controller.controller.pack().skills()[skill.index()].name.clone().into());
+        if let Some(skill) = wanted.skill.and_then(|skill| mapper.pack.skills().get(skill.index())) {
+            command.skill = Some(skill.name.clone().into());
         }
     }
 }
