@@ -191,9 +191,10 @@ impl World {
     fn make_room(&mut self) {
         let [characters, props] = [self.scene.characters.end(), self.scene.props.end()];
         self.contacts = Vec::with_capacity(contact::most_contacts(&self.scene));
-        self.divergences = Vec::with_capacity(2 * characters + props + 2);
+        // What diverged before the build is still to be told.
+        self.divergences.reserve(2 * characters + props + 2);
         self.culprits = Vec::with_capacity(characters + props);
-        self.waiting = Vec::with_capacity(characters);
+        self.waiting.reserve(characters);
         self.before = None;
         self.before = Some(Box::new(WorldSnapshot::empty(self)));
         self.rebuild_history();

@@ -3,7 +3,7 @@
 mod common;
 
 use common::shared_world::{run, world};
-use glam::Vec3;
+use glam::{Quat, Vec3};
 use physics_bridge::{Joint, Motion, Prop, Solid, WorldError};
 
 #[test]
@@ -142,4 +142,67 @@ fn joints_that_close_a_loop_are_refused() {
     let [a, b] = [a, b].map(|prop| world.motion(prop).unwrap().position);
     assert!((a.distance(b) - 1.0).abs() < 0.05 || a.distance(b) < 1.0, "{a} {b}");
     assert!(a.distance(Vec3::new(-0.5, 0.0, 2.0)) < 0.52);
+}
+
+/// Where something is that moves and is turned.
+fn moving(position: Vec3, rotation: Quat, velocity: Vec3, spin: Vec3) -> Motion {
+    Motion { position, rotation, velocity, spin }
+}
+
+#[test]
+fn a_turned_prop_keeps_the_part_of_its_motion_that_its_joint_leaves() {
+    let at = Vec3::new(0.0, 0.0, 3.0);
+    let turned = Quat::from_rotation_x(0.9) * Quat::from_rotation_z(0.7);
+    let spin = Vec3::new(0.5, -1.0, 2.0);
+    let motion = moving(at, turned, Vec3::new(1.0, 0.2, 0.3), spin);
+    let axis = Vec3::new(0.0, 0.6, 0.8);
+    let joints = [
+        (Joint::Hinge { anchor: at, axis, range: None, damping: 0.0 }, axis * axis.dot(spin), Vec3::ZERO),
+        (Joint::Ball { anchor: at, damping: 0.0 }, spin, Vec3::ZERO),
+        (Joint::Slide { axis, range: None, damping: 0.0 }, Vec3::ZERO, axis * axis.dot(motion.velocity)),
+    ];
+    for (joint, spin, velocity) in joints {
+        // At once, and a free prop that is hung up later.
+        for at_once in [true, false] {
+            let (mut world, _) = world();
+            let add = |edit: &mut physics_bridge::WorldEdit<'_>| edit.add_prop(Prop::cube(0.3, 3.0), motion);
+            let prop = if at_once {
+                let both = |edit: &mut physics_bridge::WorldEdit<'_>| {
+                    let prop = add(edit)?;
+                    edit.join(prop, None, joint).map(|_| prop)
+                };
+                world.edit(both).unwrap()
+            } else {
+                let prop = world.edit(add).unwrap();
+                world.edit(|edit| edit.join(prop, None, joint)).unwrap();
+                prop
+            };
+            let found = world.motion(prop).unwrap();
+            assert!(found.spin.distance(spin) < 1e-4, "{joint:?} {at_once}: {found:?}");
+            assert!(found.velocity.distance(velocity) < 1e-4, "{joint:?} {at_once}: {found:?}");
+        }
+    }
+}
+
+#[test]
+fn a_prop_that_is_hung_on_a_moving_one_keeps_its_own_motion() {
+    let (mut world, _) = world();
+    let turned = Quat::from_rotation_z(0.8);
+    let (drift, spin) = (Vec3::new(1.0, 2.0, 0.0), Vec3::Z * 3.0);
+    let arm = moving(Vec3::Z * 3.0, turned, drift, spin);
+    let out = turned * Vec3::X;
+    // It turns with the arm, and slides outwards besides.
+    let tip = moving(Vec3::Z * 3.0 + out, turned, drift + spin.cross(out) + out * 0.5, spin);
+    let (arm, tip) = world
+        .edit(|edit| {
+            let arm = edit.add_prop(Prop::cube(0.2, 2.0), arm)?;
+            let tip = edit.add_prop(Prop::cube(0.2, 2.0), tip)?;
+            edit.join(tip, Some(arm), Joint::Slide { axis: out, range: None, damping: 0.0 })?;
+            Ok((arm, tip))
+        })
+        .unwrap();
+    let [arm, tip] = [arm, tip].map(|prop| world.motion(prop).unwrap());
+    assert!(arm.velocity.distance(drift) < 1e-4 && arm.spin.distance(spin) < 1e-4, "{arm:?}");
+    let expected = drift + spin.cross(out) + out * 0.5;
+    assert!(tip.velocity.distance(expected) < 1e-3 && tip.spin.distance(spin) < 1e-4, "{tip:?}");
 }

@@ -1,6 +1,6 @@
 //! Taking the state over into a simulation that was built anew.
 
-use glam::DVec3;
+use glam::{DQuat, DVec3};
 use mujoco_rs::wrappers::mj_data::MjData;
 use policy_core::contract::MAX_DISTANCE_M;
 
@@ -10,7 +10,7 @@ use super::edit::Placement;
 use super::forces::Forces;
 use super::places::Span;
 use super::recover::Standing;
-use super::scene::Scene;
+use super::scene::{HoldKind, Scene};
 use crate::description::world_error::WorldError;
 
 impl World {
@@ -27,9 +27,9 @@ impl World {
             scene,
             tick: self.tick,
             contacts: Vec::new(),
-            divergences: Vec::new(),
+            divergences: self.divergences.clone(),
             culprits: Vec::new(),
-            waiting: Vec::new(),
+            waiting: self.waiting.clone(),
             standing: vec![Standing::default(); characters].into(),
             grounds: Vec::new(),
             sensed: self.sensed.clone(),
@@ -41,11 +41,10 @@ impl World {
         for index in 0..characters {
             new.carry_character(self, index);
         }
-        for index in 0..new.scene.props.end() {
-            new.carry_prop(self, index);
-        }
+        let props = 0..new.scene.props.end();
+        let hung = props.filter_map(|index| new.carry_prop(self, index)).collect();
         new.make_states();
-        new.place(placements);
+        new.place(placements, hung);
         new.history = self.history.take();
         *self = new;
         self.make_room();
@@ -63,11 +62,11 @@ impl World {
                 _ => {}
             }
         }
-        self.place(placements);
+        self.place(placements, Vec::new());
     }
 
-    /// Puts what is new where it belongs, and computes what follows.
-    fn place(&mut self, placements: &[Placement]) {
+    /// Puts what is new where it belongs, lets what was hung on a joint move on, and computes what follows.
+    fn place(&mut self, placements: &[Placement], mut hung: Vec<Hung>) {
         self.data.kinematics(); // fixtures are where rays will find them
         for placement in placements {
             match *placement {
@@ -77,8 +76,9 @@ impl World {
                         self.write_prop(index, &motion);
                     } else {
                         self.rest_prop(index);
+                        let at = (motion.position.as_dvec3(), motion.rotation.as_dquat().normalize());
                         let velocity = (motion.spin.as_dvec3(), motion.velocity.as_dvec3());
-                        self.write_rates(index, motion.rotation.as_dquat() * DVec3::X, velocity);
+                        hung.push(Hung { index, at, velocity });
                     }
                 }
                 Placement::Character { index, place: [x, y], heading, speed_mps } => {
@@ -86,8 +86,23 @@ impl World {
                 }
             }
         }
+        hung.sort_by_key(|hung| self.depth(hung.index));
+        for hung in hung {
+            // A parent moves as it should by now: those come first.
+            self.data.step1();
+            self.write_rates(&hung);
+        }
         self.is_touched = true;
         self.refresh();
+    }
+
+    /// How many props are above a prop that hangs on others.
+    fn depth(&self, mut prop: usize) -> usize {
+        let mut depth = 0;
+        while let Some(parent) = self.scene.props.at(prop).hold.as_ref().and_then(|hold| hold.parent) {
+            (prop, depth) = (parent, depth + 1);
+        }
+        depth
     }
 
     fn carry_character(&mut self, old: &World, index: usize) {
@@ -109,52 +124,62 @@ impl World {
         self.standing[index] = old.standing[index];
     }
 
-    fn carry_prop(&mut self, old: &World, index: usize) {
-        let Some(slot) = self.scene.props.slot(index) else { return };
+    /// Takes over a prop. Returns how it moves when it hangs on a new joint, which is written when all parents move.
+    fn carry_prop(&mut self, old: &World, index: usize) -> Option<Hung> {
+        let slot = self.scene.props.slot(index)?;
         let before = old.scene.props.slot(index).filter(|before| before.generation == slot.generation);
         let Some(before) = before.filter(|_| slot.present) else {
             if !slot.present {
                 self.show_prop(index, false);
                 self.rest_prop(index);
             }
-            return;
+            return None;
         };
         let (from, to) = (old.places.prop(index), self.places.prop(index));
-        let (pose, (spin, velocity)) = old.exact_motion(from.body);
-        if before.value.hold == slot.value.hold {
+        let (at, velocity) = old.exact_motion(from.body);
+        let hung = if before.value.hold == slot.value.hold {
             copy_numbers(&mut self.data, &to.span, old, &from.span);
-        } else if let Some(hold) = &slot.value.hold {
-            let parent = hold.parent.and_then(|parent| {
-                let place = old.places.props.get(parent)?.as_ref()?;
-                Some(old.exact_motion(place.body))
-            });
-            let (axis, mut relative) = (pose.1 * hold.axis, (spin, velocity));
-            if let Some(((parent_at, _), (parent_spin, parent_velocity))) = parent {
-                relative.0 -= parent_spin;
-                relative.1 -= parent_velocity + parent_spin.cross(pose.0 - parent_at);
-            }
-            self.write_rates(index, axis, relative);
+            None
+        } else if slot.value.hold.is_some() {
+            Some(Hung { index, at, velocity })
         } else {
-            self.write_free(index, pose, (spin, velocity));
-        }
+            self.write_free(index, at, velocity);
+            None
+        };
         let (from, to) = (from.body, self.places.prop(index).body);
         self.forces.carry(to, &old.forces, from);
         self.data.xfrc_applied_mut()[to] = old.data.xfrc_applied()[from];
+        hung
     }
 
-    /// Writes what a joint leaves of a motion relative to what the prop hangs on. `axis` is that of the joint.
-    fn write_rates(&mut self, index: usize, axis: DVec3, (spin, velocity): (DVec3, DVec3)) {
-        use super::scene::HoldKind;
+    /// Writes what a joint leaves of the motion of a prop relative to what it hangs on. Velocities of the parent must be
+    /// up to date.
+    fn write_rates(&mut self, &Hung { index, at: (at, turned), velocity: (mut spin, mut velocity) }: &Hung) {
         let Some(hold) = &self.scene.props.at(index).hold else { return };
-        let span = &self.places.prop(index).span;
+        if let Some(parent) = hold.parent {
+            let body = self.places.prop(parent).body;
+            let ((parent_at, _), (parent_spin, parent_velocity)) = self.exact_motion(body);
+            spin -= parent_spin;
+            velocity -= parent_velocity + parent_spin.cross(at - parent_at);
+        }
+        let axis = turned * hold.axis;
         let rates = match hold.kind {
             HoldKind::Hinge => [axis.dot(spin), 0.0, 0.0],
             HoldKind::Slide => [axis.dot(velocity), 0.0, 0.0],
-            HoldKind::Ball => spin.to_array(),
+            // MuJoCo's is in the frame of the body.
+            HoldKind::Ball => (turned.inverse() * spin).to_array(),
         };
+        let span = &self.places.prop(index).span;
         let qvel = &mut self.data.qvel_mut()[span.dofs.clone()];
         qvel.iter_mut().zip(rates).for_each(|(to, rate)| *to = rate);
     }
+}
+
+/// A prop that hangs on a new joint, and how it moves: pose, spin and velocity, world space.
+struct Hung {
+    index: usize,
+    at: (DVec3, DQuat),
+    velocity: (DVec3, DVec3),
 }
 
 /// Copies position, velocity and the start of the solver.
