@@ -274,6 +274,48 @@ fn targets_that_are_no_numbers_are_ignored_and_told_once() {
 }
 
 #[test]
+fn a_huge_target_of_one_character_leaves_the_motors_of_another_alone() {
+    let targets_after = |huge: f32| {
+        let (mut world, model) = world();
+        let [one, other] = [0.0, 3.0].map(|x| add(&mut world, &model, x, 0.0, 0.0, 0.0));
+        let mut targets = JointTargets::new(model.skeleton());
+        world.actuate(other, &targets).unwrap();
+        targets[3] = huge;
+        world.actuate(one, &targets).unwrap();
+        let told = world.step();
+        (told, bits(&world, other))
+    };
+    let (told, expected) = targets_after(0.0);
+    assert_eq!(told, 0);
+    for huge in [1e11, -1e30, f32::MAX, f32::INFINITY] {
+        let (told, found) = targets_after(huge);
+        assert_eq!((told, found == expected), (1, true), "{huge}");
+    }
+}
+
+#[test]
+fn a_build_keeps_what_is_still_to_be_told() {
+    let (mut world, model) = world();
+    let character = add(&mut world, &model, 0.0, 0.0, 0.0, 0.0);
+    world.actuate(character, &[f32::NAN]).unwrap();
+    put(&mut world, Prop::cube(0.3, 2.0), Motion::at(Vec3::new(9.0, 9.0, 1.0)));
+    assert_eq!(world.step(), 1, "the target that was ignored before the build");
+    let before = world.divergences().to_vec();
+    put(&mut world, Prop::cube(0.3, 2.0), Motion::at(Vec3::new(9.0, 5.0, 1.0)));
+    assert_eq!(world.divergences(), before);
+}
+
+#[test]
+fn rays_do_not_meet_what_was_taken_out() {
+    let (mut world, _) = world();
+    let prop = put(&mut world, Prop::cube(2.0, 2.0), Motion::at(Vec3::new(0.0, 0.0, 1.0)));
+    world.edit(|edit| edit.remove_prop(prop)).unwrap();
+    // From below the floor, to where it is kept.
+    let hit = world.ray(Vec3::Z * -4000.0, Vec3::NEG_Z, 3000.0, None).unwrap();
+    assert_eq!(hit, None);
+}
+
+#[test]
 fn shapes_at_the_edge_of_what_is_allowed_are_built_or_refused() {
     let (mut world, _) = world();
     let thin = |thickness: f32| -> Vec<Vec3> {

@@ -100,7 +100,7 @@ impl World {
         !self.culprits.is_empty()
     }
 
-    fn is_present(&self, owner: Owner) -> bool {
+    pub(super) fn is_present(&self, owner: Owner) -> bool {
         match owner {
             Owner::Prop(index) => self.scene.props.slot(index).is_some_and(|slot| slot.present),
             Owner::Character(index, _) => self.scene.characters.slot(index).is_some_and(|slot| slot.present),

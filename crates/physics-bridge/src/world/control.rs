@@ -4,6 +4,7 @@ use glam::Vec3;
 use policy_core::{CharacterState, Command, Controller};
 
 use super::World;
+use super::accuse::is_bad;
 use super::handle::CharacterHandle;
 use super::recover::{Divergence, Diverging, Remedy};
 use super::solids::vec3;
@@ -60,7 +61,8 @@ impl World {
     }
 
     /// Sets the angles that the motors of a character pull its joints to, radians, in the order of the skeleton. They
-    /// hold until the next call. Targets that are not finite are ignored; the next [`World::step`] reports them.
+    /// hold until the next call. Targets of which one is not finite, or beyond 1e10, are ignored; the next [`World::step`]
+    /// reports them. For one like that MuJoCo would stop the motors of every character in the world.
     ///
     /// # Errors
     /// When the handle is stale.
@@ -71,7 +73,7 @@ impl World {
     }
 
     fn write_targets(&mut self, index: usize, targets: &[f32]) {
-        if !targets.iter().all(|target| target.is_finite()) {
+        if targets.iter().any(|&target| is_bad(&target.into())) {
             let what = Some(Diverging::Character(self.scene.characters.handle(index)));
             let bad = Divergence { what, cause: Cause::BadControl, excess: None, remedy: Remedy::Ignored };
             if !self.waiting.contains(&bad) && self.waiting.len() < self.waiting.capacity() {

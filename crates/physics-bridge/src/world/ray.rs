@@ -9,7 +9,7 @@ use policy_core::contract::{MAX_DISTANCE_M, within};
 use super::World;
 use super::contact::{Part, part};
 use super::forces::Movable;
-use super::places::Places;
+use super::places::{Owner, Places};
 use super::scene::Scene;
 use super::solids::vec3;
 use crate::description::model::Model;
@@ -54,9 +54,14 @@ impl World {
             return Ok(None);
         };
         let body = self.data.model().geom_bodyid()[geom] as usize;
+        let owner = self.places.owners[body];
+        // What was taken out lies far below everything, until the next build.
+        if matches!(owner, Owner::Prop(_) | Owner::Character(..)) && !self.is_present(owner) {
+            return Ok(None);
+        }
         let distance = distance as f32;
         Ok(Some(RayHit {
-            part: part(self.places.owners[body], &self.scene),
+            part: part(owner, &self.scene),
             distance,
             position: origin + direction * distance,
             normal: vec3(normal).as_vec3(),
