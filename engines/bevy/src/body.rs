@@ -11,6 +11,7 @@ use policy_core::Heading;
 ///
 /// The plug-in writes its `Transform`. Forces are given as components of the physics, such as `ExternalForce`.
 #[derive(Component, Reflect, Clone, Copy, Debug, PartialEq, Eq)]
+#[reflect(Component)]
 #[relationship(relationship_target = PolicyBodies)]
 #[require(Transform, BodyPose)]
 #[cfg_attr(feature = "render", require(Visibility))]
@@ -24,6 +25,7 @@ pub struct PolicyBody {
 
 /// The bodies of a character, in the order of the skeleton. They are despawned with it.
 #[derive(Component, Reflect, Debug, Default)]
+#[reflect(Component, Default)]
 #[relationship_target(relationship = PolicyBody, linked_spawn)]
 pub struct PolicyBodies(Vec<Entity>);
 
@@ -54,6 +56,7 @@ pub(crate) fn sort_bodies(commands: &mut Commands, character: Entity) {
 
 /// Where a body, or the character itself, was at the last two fixed steps. Bevy's world.
 #[derive(Component, Reflect, Clone, Copy, Debug, Default, PartialEq)]
+#[reflect(Component, Default)]
 pub struct BodyPose {
     /// At the step before the last one.
     pub previous: Isometry3d,
@@ -86,6 +89,11 @@ impl BodyPose {
     }
 }
 
+/// True when the game has put something elsewhere. Another scale alone does not count.
+pub(crate) fn is_moved(written: &Transform, now: &Transform) -> bool {
+    written.translation != now.translation || written.rotation != now.rotation
+}
+
 /// Writes the `Transform` of characters and bodies, between the last two fixed steps.
 pub(crate) fn interpolate(
     time: Res<Time<Fixed>>,
@@ -94,7 +102,7 @@ pub(crate) fn interpolate(
     let fraction = time.overstep_fraction().clamp(0.0, 1.0);
     for (mut transform, mut pose, is_body) in &mut bodies {
         // A character that the game has just put elsewhere is left alone until the next fixed step takes note.
-        let moved_by_game = !is_body && pose.written.is_some_and(|written| written != *transform);
+        let moved_by_game = !is_body && pose.written.is_some_and(|written| is_moved(&written, &transform));
         if !pose.is_set || moved_by_game {
             continue;
         }

@@ -25,7 +25,7 @@ use crate::pack_asset::PackAsset;
 /// }
 /// ```
 #[derive(Component, Reflect, Clone, Debug, Default)]
-#[reflect(Component)]
+#[reflect(Component, Default)]
 #[require(Transform, CharacterCommand, CharacterReport)]
 #[cfg_attr(feature = "render", require(Visibility))]
 pub struct PolicyCharacter {

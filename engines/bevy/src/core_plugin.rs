@@ -1,7 +1,6 @@
 //! Packs, controllers and commands: everything that knows no physics.
 
 use std::borrow::Cow;
-use std::collections::HashSet;
 use std::sync::Arc;
 
 use bevy::asset::{AssetLoadFailedEvent, LoadState};
@@ -12,7 +11,7 @@ use policy_core::{Command, Goal};
 use crate::axes;
 use crate::body;
 use crate::character::{CharacterCommand, CharacterGoal, CharacterReport, PolicyCharacter, PolicyController};
-use crate::messages::{CharacterError, CharacterProblem, Fell, Rose, SkillEnded, SkillStarted};
+use crate::messages::{CharacterError, CharacterProblem, Fell, Reported, Rose, SkillEnded, SkillStarted};
 use crate::pack_asset::{PackAsset, PackLoader};
 
 /// The three parts of a fixed step before the physics, in this order. A game that changes commands in the fixed
@@ -90,7 +89,11 @@ fn put_back_components(
 ) {
     for (character, transform, command, report) in &characters {
         let mut entity = commands.entity(character);
-        entity.insert_if_new((Transform::default(), CharacterCommand::default(), CharacterReport::default()));
+        entity.try_insert_if_new((
+            Transform::default(),
+            CharacterCommand::default(),
+            CharacterReport::default(),
+        ));
         let parts = [("Transform", transform), ("CharacterCommand", command), ("CharacterReport", report)];
         for (component, _) in parts.into_iter().filter(|(_, there)| !there) {
             errors.write(CharacterProblem::Component { component }.of(character));
@@ -104,18 +107,17 @@ fn start_characters(
     waiting: Query<(Entity, &PolicyCharacter), Without<PolicyController>>,
     packs: Res<Assets<PackAsset>>,
     server: Res<AssetServer>,
-    mut reported: Local<HashSet<Entity>>,
+    mut reported: Local<Reported>,
     mut errors: MessageWriter<CharacterError>,
 ) {
-    reported.retain(|&entity| waiting.contains(entity));
+    reported.keep(|entity| waiting.contains(entity));
     for (entity, character) in &waiting {
         if let Some(asset) = packs.get(&character.pack) {
-            commands.entity(entity).insert(PolicyController::new(asset, character.config));
-        } else if let LoadState::Failed(error) = server.load_state(&character.pack)
-            && reported.insert(entity)
-        {
+            commands.entity(entity).try_insert(PolicyController::new(asset, character.config));
+        } else if let LoadState::Failed(error) = server.load_state(&character.pack) {
             let path = character.pack.path().map(ToString::to_string).unwrap_or_default();
-            errors.write(CharacterProblem::Load { path, reason: error.to_string() }.of(entity));
+            let problem = CharacterProblem::Load { path, reason: error.to_string() };
+            reported.write(problem, entity, &mut errors);
         }
     }
 }

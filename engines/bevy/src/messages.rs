@@ -1,5 +1,7 @@
 //! What characters tell a game: skills, falls, and what went wrong.
 
+use std::collections::HashMap;
+
 use bevy::prelude::*;
 use policy_core::{SkillEnd, SkillId, SwapError};
 
@@ -82,6 +84,18 @@ pub enum CharacterProblem {
         /// What was found.
         found: Transform,
     },
+    /// A character can't stand where its `Transform` is. It stays where it was, or waits for another one.
+    #[error("expected a Transform where the character can stand: {message}")]
+    Place {
+        /// What is wrong with the place.
+        message: String,
+    },
+    /// There is no default context of Rapier, or there are several. The character waits for the only one.
+    #[error("expected one default context of Rapier for the character, found {found}")]
+    Context {
+        /// Default contexts.
+        found: usize,
+    },
     /// A force or impulse is not finite. It is not applied.
     #[error("expected a finite force on \"{body}\", found {found}")]
     Force {
@@ -128,5 +142,30 @@ impl CharacterProblem {
     /// The problem of a character.
     pub(crate) fn of(self, character: Entity) -> CharacterError {
         CharacterError { character, problem: self }
+    }
+}
+
+/// What was reported of characters that wait: each problem once, as long as it is the same.
+#[derive(Default)]
+pub(crate) struct Reported(HashMap<Entity, String>);
+
+impl Reported {
+    /// Forgets the characters that wait no longer.
+    pub(crate) fn keep(&mut self, waits: impl Fn(Entity) -> bool) {
+        self.0.retain(|&character, _| waits(character));
+    }
+
+    /// Reports a problem of a character, unless it was the last one reported of it.
+    pub(crate) fn write(
+        &mut self,
+        problem: CharacterProblem,
+        character: Entity,
+        errors: &mut MessageWriter<'_, CharacterError>,
+    ) {
+        let words = problem.to_string();
+        if self.0.get(&character) != Some(&words) {
+            self.0.insert(character, words);
+            errors.write(problem.of(character));
+        }
     }
 }

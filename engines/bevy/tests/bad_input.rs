@@ -8,7 +8,8 @@ use bevy::ecs::system::RunSystemOnce;
 use bevy::prelude::*;
 use bevy_policy_space::RapierArticulation;
 use bevy_policy_space::prelude::*;
-use bevy_rapier3d::prelude::{RapierContextJoints, WriteRapierContext};
+use bevy_rapier3d::plugin::context::{DefaultRapierContext, RapierContextSimulation};
+use bevy_rapier3d::prelude::{RapierContextJoints, ReadRapierContext, WriteRapierContext};
 use policy_core::CharacterPack;
 
 use common::{
@@ -166,6 +167,70 @@ fn a_transform_that_is_not_finite_is_refused() {
     assert_eq!(error_with(&app, "finite Transform"), 2, "{:?}", heard(&app).errors);
     assert!(walks(&app, character) && (place(&app, character).x - 1.0).abs() < 0.5);
     assert_eq!(heard(&app).errors.len(), 2, "{:?}", heard(&app).errors);
+}
+
+#[test]
+fn a_transform_that_is_too_far_away_is_refused() {
+    let mut app = game(64.0);
+    let character = spawn(&mut app, Vec3::X * 20_000.0);
+    run(&mut app, 0.5);
+    assert_eq!(error_with(&app, "m from the origin, found 20000 m"), 1, "{:?}", heard(&app).errors);
+    app.world_mut().entity_mut(character).insert(Transform::from_xyz(1.0, 0.0, 0.0));
+    run(&mut app, 1.0);
+    assert!(walks(&app, character));
+    for far in [Vec3::X * 20_000.0, Vec3::Z * -9_999.0, Vec3::Y * 1e30] {
+        app.world_mut().entity_mut(character).insert(Transform::from_translation(far));
+        run(&mut app, 0.5);
+        assert!(place(&app, character).distance(Vec3::X) < 0.5, "{far}: {}", place(&app, character));
+    }
+    assert_eq!((heard(&app).errors.len(), error_with(&app, "from the origin")), (4, 4), "{:?}", heard(&app));
+    assert!(walks(&app, character));
+}
+
+#[test]
+fn a_second_problem_of_a_character_that_waits_is_reported_too() {
+    let mut app = game(64.0);
+    let character = spawn(&mut app, Vec3::X * f32::NAN);
+    run(&mut app, 0.2);
+    app.world_mut().entity_mut(character).insert(Transform::from_xyz(0.0, 0.0, 20_000.0));
+    run(&mut app, 0.2);
+    assert_eq!(heard(&app).errors.len(), 2, "{:?}", heard(&app).errors);
+    assert!(error_with(&app, "finite Transform") == 1 && error_with(&app, "from the origin") == 1);
+}
+
+#[test]
+fn a_character_despawned_while_it_comes_in_leaves_nothing_behind() {
+    let mut app = game(64.0);
+    let character = spawn(&mut app, Vec3::ZERO);
+    // All bodies are spawned, and the first gets its pose: in the same flush of commands.
+    let mut poses = 0;
+    app.add_observer(move |_: On<Insert<bevy_policy_space::BodyPose>>, mut commands: Commands| {
+        poses += 1;
+        if poses == 16 {
+            commands.entity(character).try_despawn();
+        }
+    });
+    run(&mut app, 0.5);
+    assert!(app.world().get_entity(character).is_err());
+    let left = app.world_mut().run_system_once(|context: ReadRapierContext| {
+        let world = context.single().expect("one world");
+        (world.rigidbody_set.bodies.len(), world.joints.multibody_joints.multibodies().count())
+    });
+    assert_eq!(left.expect("a system"), (0, 0));
+    let mut names = app.world_mut().query::<&Name>();
+    assert_eq!(names.iter(app.world()).filter(|name| name.as_str() == "head").count(), 0);
+}
+
+#[test]
+fn two_default_contexts_are_reported() {
+    let mut app = game(64.0);
+    let another = app.world_mut().spawn((RapierContextSimulation::default(), DefaultRapierContext)).id();
+    let character = spawn(&mut app, Vec3::ZERO);
+    run(&mut app, 0.5);
+    assert_eq!(error_with(&app, "one default context of Rapier for the character, found 2"), 1);
+    app.world_mut().despawn(another);
+    run(&mut app, 1.0);
+    assert!(walks(&app, character) && heard(&app).errors.len() == 1, "{:?}", heard(&app).errors);
 }
 
 #[test]

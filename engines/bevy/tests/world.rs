@@ -4,13 +4,15 @@ mod common;
 
 use std::hash::{DefaultHasher, Hash, Hasher};
 
-use bevy::ecs::system::RunSystemOnce;
+use bevy::ecs::system::{RunSystemOnce, SystemParam};
 use bevy::prelude::*;
 use bevy_policy_space::RapierArticulation;
 use bevy_policy_space::prelude::*;
+use bevy_rapier3d::plugin::context::RapierContextSimulation;
 use bevy_rapier3d::prelude::{
-    ActiveEvents, ColliderMassProperties, CollisionEvent, QueryFilter, RapierConfiguration,
-    RapierContextColliders, RapierRigidBodySet, ReadRapierContext,
+    ActiveEvents, BevyPhysicsHooks, ColliderMassProperties, CollisionEvent, CollisionGroups, Group,
+    QueryFilter, RapierConfiguration, RapierContextColliders, RapierPhysicsPlugin, RapierRigidBodySet,
+    ReadRapierContext,
 };
 use common::{body, game, heard, place, report, root_height, run, spawn, walk_to};
 
@@ -41,6 +43,84 @@ fn it_steps_onto_a_board_that_moves_and_no_other_character_is_its_ground() {
         app.world().get::<PolicyController>(character).expect("a controller").sensed.ground_height
     });
     assert!((ground[0] - 0.1).abs() < 0.01 && ground[1].abs() < 0.01, "{ground:?}");
+}
+
+#[test]
+fn another_scale_puts_it_nowhere() {
+    let mut app = game(64.0);
+    let character = spawn(&mut app, Vec3::ZERO);
+    app.world_mut().entity_mut(character).insert(walk_to(Vec3::new(0.0, 0.0, -100.0)));
+    run(&mut app, 3.0);
+    let before = place(&app, character).z;
+    for frame in 0..128 {
+        app.world_mut().get_mut::<Transform>(character).expect("a Transform").scale =
+            Vec3::splat(1.0 + 0.01 * frame as f32);
+        app.update();
+    }
+    assert!(
+        place(&app, character).z < before - 1.0,
+        "it walks on, from {before} to {}",
+        place(&app, character)
+    );
+    assert!(app.world().get::<Transform>(character).expect("a Transform").scale.x > 2.0);
+}
+
+fn sensed_ground(app: &App, character: Entity) -> f32 {
+    app.world().get::<PolicyController>(character).expect("a controller").sensed.ground_height
+}
+
+#[test]
+fn what_its_groups_pass_through_is_no_ground() {
+    let mut app = game(64.0);
+    // It stands waist-deep in what is for others, and beside it a character that touches all.
+    let ghost = CollisionGroups::new(Group::GROUP_2, Group::GROUP_2);
+    let mist = (Collider::cuboid(1.0, 0.15, 1.0), ghost, Transform::from_xyz(0.0, 0.15, 0.0));
+    app.world_mut().spawn(mist);
+    let character = spawn(&mut app, Vec3::ZERO);
+    let groups = CollisionGroups::new(Group::GROUP_1, Group::GROUP_1);
+    app.world_mut().entity_mut(character).insert(RapierCharacter { groups, ..default() });
+    run(&mut app, 1.0);
+    assert!(sensed_ground(&app, character).abs() < 0.02, "{}", sensed_ground(&app, character));
+}
+
+#[test]
+fn a_collider_hung_on_its_own_body_is_no_ground() {
+    let mut app = game(64.0);
+    let character = spawn(&mut app, Vec3::ZERO);
+    run(&mut app, 1.0);
+    // Just above the floor below the root.
+    let pelvis = body(&app, character, "pelvis");
+    let below = Transform::from_xyz(0.0, 0.0, 0.07 - root_height(&app, character));
+    let hung = (Collider::ball(0.03), ColliderMassProperties::Mass(0.01), below, ChildOf(pelvis));
+    let hung = app.world_mut().spawn(hung).id();
+    run(&mut app, 0.5);
+    let is_hung = app.world_mut().run_system_once(move |colliders: Query<&RapierContextColliders>| {
+        let colliders = colliders.single().expect("one world");
+        let handle = colliders.entity2collider().get(&hung).expect("a collider");
+        colliders.colliders[*handle].parent().is_some()
+    });
+    assert!(is_hung.expect("a system"), "it is on the body");
+    assert!(sensed_ground(&app, character).abs() < 0.02, "{}", sensed_ground(&app, character));
+}
+
+#[derive(SystemParam)]
+struct MyHooks;
+
+impl BevyPhysicsHooks for MyHooks {}
+
+#[test]
+fn a_game_with_hooks_of_its_own_has_one_rapier() {
+    let mut app = App::new();
+    app.add_plugins((MinimalPlugins, TransformPlugin, AssetPlugin::default()))
+        .add_plugins(RapierPhysicsPlugin::<MyHooks>::default().in_fixed_schedule())
+        .add_plugins(PolicySpacePlugins)
+        .init_resource::<common::Heard>()
+        .add_systems(Last, common::listen);
+    app.finish();
+    app.cleanup();
+    app.update();
+    let mut worlds = app.world_mut().query::<&RapierContextSimulation>();
+    assert_eq!(worlds.iter(app.world()).count(), 1);
 }
 
 #[test]

@@ -1,8 +1,8 @@
 //! Bodies come into Rapier's world with a character and leave with it.
 
-use std::collections::HashSet;
-
+use bevy::ecs::system::RunSystemOnce;
 use bevy::prelude::*;
+use bevy_rapier3d::plugin::context::RapierContextEntityLink;
 use bevy_rapier3d::plugin::context::systemparams::{RapierContextMut, WriteRapierContext};
 use physics_rapier::{Articulation, Model};
 use policy_core::CharacterState;
@@ -11,10 +11,10 @@ use policy_core::contract::Pose;
 use crate::axes;
 use crate::body::{self, BodyPose, PolicyBodies};
 use crate::character::{PolicyCharacter, PolicyController};
-use crate::messages::{CharacterError, CharacterProblem};
+use crate::messages::{CharacterError, CharacterProblem, Reported};
 
 use super::place::{GroundPose, stand};
-use super::{Models, RapierArticulation, RapierCharacter, name_bodies, sets, world_of};
+use super::{DefaultContexts, Models, RapierArticulation, RapierCharacter, name_bodies, sets, world_of};
 
 /// Puts characters in whose pack is loaded.
 pub(super) fn put_in(
@@ -24,22 +24,21 @@ pub(super) fn put_in(
         (With<PolicyCharacter>, Without<RapierArticulation>),
     >,
     mut context: WriteRapierContext,
+    contexts: DefaultContexts,
     mut models: ResMut<Models>,
-    mut reported: Local<HashSet<Entity>>,
+    mut reported: Local<Reported>,
     mut errors: MessageWriter<CharacterError>,
 ) {
-    reported.retain(|&entity| waiting.contains(entity));
-    let Some(mut world) = world_of(&mut context) else { return };
+    reported.keep(|entity| waiting.contains(entity));
+    let (Some(mut world), Ok(link)) = (world_of(&mut context), contexts.single()) else { return };
     for (character, mut controller, wanted, transform) in &mut waiting {
         let pack = controller.controller.pack().clone();
         let model = models.of(&pack).map_err(|error| CharacterProblem::Body { message: error.to_string() });
-        let place = GroundPose::of(transform).ok_or(CharacterProblem::Transform { found: *transform });
+        let place = GroundPose::of(transform);
         let (model, good) = match (model, place) {
             (Ok(model), Ok(place)) => (model, place),
             (Err(problem), _) | (_, Err(problem)) => {
-                if reported.insert(character) {
-                    errors.write(problem.of(character));
-                }
+                reported.write(problem, character, &mut errors);
                 continue;
             }
         };
@@ -57,13 +56,46 @@ pub(super) fn put_in(
         for (&entity, at) in entities.iter().zip(body::poses(&controller)) {
             let mut pose = BodyPose::default();
             pose.jump(at);
-            commands.entity(entity).insert(pose);
+            // With the link, bevy_rapier can hang colliders of the game on the body.
+            commands.entity(entity).try_insert((pose, RapierContextEntityLink(link)));
         }
         let mut pose = BodyPose { written: Some(*transform), ..BodyPose::default() };
         pose.jump(body::ground_pose(&controller));
         let own =
             RapierArticulation { articulation, pack, stand: standing, entities, links, good, fault: None };
-        commands.entity(character).insert((own, pose));
+        commands.queue(move |world: &mut World| embody(world, character, own, pose));
+    }
+}
+
+/// Gives a character its body, or takes that out again when the game has despawned the character by now.
+fn embody(world: &mut World, character: Entity, own: RapierArticulation, pose: BodyPose) {
+    if let Ok(mut character) = world.get_entity_mut(character) {
+        character.insert((own, pose));
+        return;
+    }
+    for &entity in own.entities.iter().chain([&own.links]) {
+        world.try_despawn(entity).ok();
+    }
+    let remove = |In(articulation): In<Articulation>, mut context: WriteRapierContext| {
+        let Some(mut rapier) = world_of(&mut context) else { return };
+        articulation.remove(&mut sets(&mut rapier));
+        name_bodies(&mut rapier);
+    };
+    // A system of these parameters always runs.
+    world.run_system_once_with(remove, own.articulation).ok();
+}
+
+/// Reports characters that wait because there is not exactly one default context.
+pub(super) fn report_contexts(
+    waiting: Query<Entity, (With<PolicyController>, Without<RapierArticulation>)>,
+    contexts: DefaultContexts,
+    mut reported: Local<Reported>,
+    mut errors: MessageWriter<CharacterError>,
+) {
+    reported.keep(|entity| waiting.contains(entity));
+    let found = contexts.iter().count();
+    for character in waiting.iter().filter(|_| found != 1) {
+        reported.write(CharacterProblem::Context { found }, character, &mut errors);
     }
 }
 

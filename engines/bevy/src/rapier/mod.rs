@@ -19,7 +19,7 @@ use bevy_rapier3d::plugin::{
     NoUserData, PhysicsSet, RapierConfiguration, RapierContextInitialization, RapierPhysicsPlugin,
     TimestepMode,
 };
-use bevy_rapier3d::prelude::{ActiveEvents, CollisionGroups};
+use bevy_rapier3d::prelude::{ActiveEvents, CollisionGroups, PhysicsQuarantineEvent};
 use physics_rapier::{Articulation, Drive, Model, ModelError, Sets};
 use policy_core::CharacterPack;
 use policy_core::contract::Pose;
@@ -31,7 +31,7 @@ use self::place::GroundPose;
 
 /// How a character is in Rapier. Read when its body is built.
 #[derive(Component, Reflect, Clone, Debug)]
-#[reflect(Component)]
+#[reflect(Component, Default)]
 pub struct RapierCharacter {
     /// Motors of Rapier, the default, stand any fixed rate of 60 Hz and more. Torques want the physics rate of the
     /// pack, 120 Hz for the humanoid, and one solver iteration; motion is then as in training.
@@ -86,7 +86,7 @@ enum Fault {
 /// Puts characters into bevy_rapier's world.
 ///
 /// Adds [`RapierPhysicsPlugin`] in the fixed schedule, with the step of [`Time<Fixed>`], unless the game added it before
-/// this plug-in. It has to be in the same fixed schedule then.
+/// this plug-in, with any hooks. It has to be in the same fixed schedule then.
 pub struct PolicyRapierPlugin {
     schedule: InternedScheduleLabel,
 }
@@ -108,7 +108,8 @@ impl PolicyRapierPlugin {
 
 impl Plugin for PolicyRapierPlugin {
     fn build(&self, app: &mut App) {
-        if !app.is_plugin_added::<RapierPhysicsPlugin<NoUserData>>() {
+        // Every `RapierPhysicsPlugin` brings this one, whatever its hooks.
+        if !app.world().contains_resource::<Messages<PhysicsQuarantineEvent>>() {
             let mut world = RapierContextInitialization::default();
             if let RapierContextInitialization::InitializeDefaultRapierContext {
                 integration_parameters,
@@ -153,6 +154,7 @@ impl Plugin for PolicyRapierPlugin {
                     .in_set(PolicySpaceSystems::Sense),
                 step::actuate.in_set(PolicySpaceSystems::Actuate),
                 step::mirror.after(PhysicsSet::Writeback).run_if(is_active),
+                insert::report_contexts.after(PhysicsSet::Writeback),
             ),
         );
     }
@@ -167,6 +169,10 @@ fn match_timestep(time: Res<Time>, mut mode: ResMut<TimestepMode>) {
         *dt = time.delta_secs();
     }
 }
+
+/// The default contexts: there should be one.
+type DefaultContexts<'w, 's> =
+    Query<'w, 's, Entity, (With<RapierContextSimulation>, With<DefaultRapierContext>)>;
 
 /// False while the game has stopped Rapier.
 fn is_active(

@@ -4,15 +4,18 @@ use bevy::prelude::*;
 use bevy_rapier3d::plugin::context::systemparams::{RapierContextMut, WriteRapierContext};
 use physics_rapier::{Articulation, PlaceError};
 use policy_core::Heading;
-use policy_core::contract::Pose;
+use policy_core::contract::{MAX_DISTANCE_M, Pose};
 use policy_core::glam::Quat;
 
 use crate::axes;
-use crate::body::{self, BodyPose, PolicyBody};
+use crate::body::{self, BodyPose, PolicyBody, is_moved};
 use crate::character::PolicyController;
 use crate::messages::{CharacterError, CharacterProblem};
 
 use super::{Fault, RapierArticulation, sets, world_of};
+
+/// How far a character may reach from the point that it stands on, metres.
+const REACH_M: f32 = 10.0;
 
 /// A point on the ground, Bevy's world, and a heading.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -22,12 +25,21 @@ pub(super) struct GroundPose {
 }
 
 impl GroundPose {
-    /// The place of a `Transform`; `None` when that is not finite.
-    pub fn of(transform: &Transform) -> Option<Self> {
-        (transform.translation.is_finite() && transform.rotation.is_finite()).then(|| Self {
-            point: transform.translation,
-            heading: axes::heading_from_bevy(transform.rotation),
-        })
+    /// The place of a `Transform`.
+    ///
+    /// # Errors
+    /// When it is not finite, or so far away that what stands there is implausible at once.
+    pub fn of(transform: &Transform) -> Result<Self, CharacterProblem> {
+        if !transform.translation.is_finite() || !transform.rotation.is_finite() {
+            return Err(CharacterProblem::Transform { found: *transform });
+        }
+        let (most, found) = (MAX_DISTANCE_M - REACH_M, transform.translation.length());
+        if found > most {
+            let message = format!("expected at most {most} m from the origin, found {found} m");
+            return Err(CharacterProblem::Place { message });
+        }
+        let heading = axes::heading_from_bevy(transform.rotation);
+        Ok(Self { point: transform.translation, heading })
     }
 }
 
@@ -79,11 +91,14 @@ pub(super) fn teleport(
 ) {
     let Some(mut world) = world_of(&mut context) else { return };
     for (entity, mut transform, mut pose, mut own, mut controller) in &mut characters {
-        let Some(written) = pose.written.filter(|written| *written != *transform) else { continue };
-        let Some(place) = GroundPose::of(&transform) else {
-            errors.write(CharacterProblem::Transform { found: *transform }.of(entity));
-            *transform = written;
-            continue;
+        let Some(written) = pose.written.filter(|written| is_moved(written, &transform)) else { continue };
+        let place = match GroundPose::of(&transform) {
+            Ok(place) => place,
+            Err(problem) => {
+                errors.write(problem.of(entity));
+                *transform = written;
+                continue;
+            }
         };
         let own = &mut *own;
         pose.written = Some(*transform);

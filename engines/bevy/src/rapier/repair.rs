@@ -3,6 +3,7 @@
 use std::sync::Arc;
 
 use bevy::prelude::*;
+use bevy_rapier3d::plugin::context::RapierContextEntityLink;
 use bevy_rapier3d::plugin::context::systemparams::{ReadRapierContext, WriteRapierContext};
 use bevy_rapier3d::prelude::{ColliderDisabled, RigidBodyDisabled};
 use policy_core::contract::Pose;
@@ -13,7 +14,9 @@ use crate::messages::{CharacterError, CharacterProblem};
 
 use super::insert::{build, spawn_links};
 use super::place::{settle, stand};
-use super::{Fault, Models, RapierArticulation, RapierCharacter, name_bodies, sets, world_of};
+use super::{
+    DefaultContexts, Fault, Models, RapierArticulation, RapierCharacter, name_bodies, sets, world_of,
+};
 
 /// Puts back what the physics of a character needs and a game removed.
 pub(super) fn put_back(
@@ -25,11 +28,11 @@ pub(super) fn put_back(
     mut errors: MessageWriter<CharacterError>,
 ) {
     for character in &wanted {
-        commands.entity(character).insert(RapierCharacter::default());
+        commands.entity(character).try_insert(RapierCharacter::default());
         errors.write(CharacterProblem::Component { component: "RapierCharacter" }.of(character));
     }
     for character in &posed {
-        commands.entity(character).insert(BodyPose::default());
+        commands.entity(character).try_insert(BodyPose::default());
         errors.write(CharacterProblem::Component { component: "BodyPose" }.of(character));
     }
     for (character, mut own, controller) in &mut characters {
@@ -81,8 +84,9 @@ pub(super) fn rebuild(
     )>,
     mut bodies: Query<&mut BodyPose, (With<PolicyBody>, With<Transform>, Without<RapierArticulation>)>,
     mut context: WriteRapierContext,
+    contexts: DefaultContexts,
 ) {
-    let Some(mut world) = world_of(&mut context) else { return };
+    let (Some(mut world), Ok(link)) = (world_of(&mut context), contexts.single()) else { return };
     for (character, mut own, mut controller, wanted, mut pose) in &mut characters {
         let Some(fault) = own.fault else { continue };
         let own = &mut *own;
@@ -98,6 +102,7 @@ pub(super) fn rebuild(
                 commands.entity(*entity).try_despawn();
                 let name = &model.skeleton().bodies()[index].name;
                 *entity = body::spawn_body(&mut commands, character, index, name);
+                commands.entity(*entity).try_insert(RapierContextEntityLink(link));
             }
         }
         body::sort_bodies(&mut commands, character);
@@ -118,13 +123,13 @@ pub(super) fn rebuild(
 
 /// Gives a character the body of its new pack, in the pose that it has.
 pub(super) fn reload(
-    mut characters: Query<(Entity, &PolicyController, &mut RapierArticulation, &RapierCharacter)>,
+    mut characters: Query<(Entity, &mut PolicyController, &mut RapierArticulation, &RapierCharacter)>,
     mut context: WriteRapierContext,
     mut models: ResMut<Models>,
     mut errors: MessageWriter<CharacterError>,
 ) {
     let Some(mut world) = world_of(&mut context) else { return };
-    for (entity, controller, mut own, wanted) in &mut characters {
+    for (entity, mut controller, mut own, wanted) in &mut characters {
         let pack = controller.controller.pack();
         if Arc::ptr_eq(pack, &own.pack) {
             continue;
@@ -146,8 +151,8 @@ pub(super) fn reload(
         let (set, joints) = (&world.rigidbody_set.bodies, &world.joints.multibody_joints);
         let keeps = own.articulation.pose_into(set, joints, &mut kept).is_ok();
         own.articulation.clone().remove(&mut sets(&mut world));
-        let (articulation, _, standing) = build(&model, wanted, &mut world, &own.entities, own.links);
-        (own.articulation, own.stand) = (articulation, standing);
+        let (articulation, rest, standing) = build(&model, wanted, &mut world, &own.entities, own.links);
+        (own.articulation, own.stand, controller.rest) = (articulation, standing, rest);
         if !keeps || own.articulation.set_pose(&mut sets(&mut world), &kept.qpos, &kept.qvel).is_err() {
             own.fault = Some(Fault::Stand);
         }

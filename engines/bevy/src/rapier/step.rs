@@ -3,9 +3,10 @@
 use bevy::prelude::*;
 use bevy_rapier3d::plugin::context::systemparams::WriteRapierContext;
 use bevy_rapier3d::prelude::{ExternalForce, ExternalImpulse};
-use bevy_rapier3d::rapier::geometry::{Collider, ColliderHandle, Ray};
+use bevy_rapier3d::rapier::dynamics::RigidBodySet;
+use bevy_rapier3d::rapier::geometry::{Collider, ColliderHandle, ColliderSet, InteractionGroups, Ray};
 use bevy_rapier3d::rapier::pipeline::QueryFilter;
-use physics_rapier::{Cause, Diverged};
+use physics_rapier::{Articulation, Cause, Diverged};
 
 use crate::axes;
 use crate::body::{self, BodyPose, PolicyBody};
@@ -29,21 +30,27 @@ pub(super) fn sense(
     let (set, joints) = (&world.rigidbody_set.bodies, &world.joints.multibody_joints);
     // A character stands on what is fixed or kinematic, and on what moves where it is no higher than a step: a board, not a crate that it
     // kicks, nor another character.
+    // The body tells: a game may have hung colliders of its own on it.
     let is_prop = |_: ColliderHandle, collider: &Collider| {
-        Entity::try_from_bits(collider.user_data as u64).is_none_or(|entity| !parts.contains(entity))
+        let body = collider.parent().and_then(|parent| set.get(parent));
+        let entity = body.and_then(|body| Entity::try_from_bits(body.user_data as u64));
+        entity.is_none_or(|entity| !parts.contains(entity))
     };
     let colliders = &world.colliders.colliders;
     let rays_through = |filter| {
         let dispatcher = world.simulation.narrow_phase.query_dispatcher();
         world.simulation.broad_phase.as_query_pipeline(dispatcher, set, colliders, filter)
     };
-    let loose = rays_through(QueryFilter::only_dynamic().exclude_sensors().predicate(&is_prop));
-    let query = rays_through(QueryFilter::exclude_dynamic().exclude_sensors());
     for (entity, report, mut controller, mut own) in &mut characters {
         if controller.due == 0 || own.fault.is_some() {
             continue;
         }
         let controller = &mut *controller;
+        // What its colliders pass through is no ground to it.
+        let groups = groups_of(&own.articulation, set, colliders);
+        let loose =
+            rays_through(QueryFilter::only_dynamic().exclude_sensors().groups(groups).predicate(&is_prop));
+        let query = rays_through(QueryFilter::exclude_dynamic().exclude_sensors().groups(groups));
         let mut ground = controller.sensed.ground_height;
         if let Some(root) = set.get(own.articulation.bodies()[0]) {
             let ray = Ray::new(root.translation(), Vec3::NEG_Y);
@@ -82,6 +89,13 @@ pub(super) fn sense(
             }
         }
     }
+}
+
+/// The collision groups that a character was built with.
+fn groups_of(articulation: &Articulation, set: &RigidBodySet, colliders: &ColliderSet) -> InteractionGroups {
+    let bodies = articulation.bodies().iter().filter_map(|&body| set.get(body));
+    let mut own = bodies.flat_map(|body| body.colliders()).filter_map(|&collider| colliders.get(collider));
+    own.next().map_or(InteractionGroups::all(), |collider| collider.collision_groups())
 }
 
 /// Writes joint targets and the forces of the game to Rapier.
