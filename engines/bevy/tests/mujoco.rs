@@ -120,6 +120,62 @@ fn props_and_fixtures_are_pushed_moved_refused_and_removed() {
 }
 
 #[test]
+fn one_that_mujoco_refuses_keeps_no_other_out() {
+    let mut app = game(64.0);
+    // More kinds of contact than one world can tell apart.
+    let sound = PackAsset::from_bytes(&pack_bytes()).expect("a pack").pack;
+    let mut manifest = sound.manifest().clone();
+    let bits = r#"contype="1048575" conaffinity="1048574""#;
+    manifest.mjcf = manifest.mjcf.map(|mjcf| mjcf.replace(r#"contype="5" conaffinity="2""#, bits));
+    let changed = policy_core::CharacterPack::from_parts(manifest, sound.tensors().clone()).expect("a pack");
+    let asset = PackAsset { pack: std::sync::Arc::new(changed) };
+    let refused = app.world_mut().resource_mut::<Assets<PackAsset>>().add(asset);
+    let sound = spawn(&mut app, Vec3::ZERO);
+    let refused =
+        app.world_mut().spawn((PolicyCharacter::new(refused), Transform::from_xyz(5.0, 0.0, 0.0))).id();
+    let late = spawn(&mut app, Vec3::new(-5.0, 0.0, 0.0));
+    run(&mut app, 1.0);
+    let is_in = |app: &App, entity| app.world().get::<MujocoBody>(entity).is_some();
+    assert_eq!([sound, refused, late].map(|entity| is_in(&app, entity)), [true, false, true]);
+    assert_eq!(heard(&app).errors.len(), 1, "{:?}", heard(&app).errors);
+    assert!(root_height(&app, sound) > 0.7 && root_height(&app, late) > 0.7);
+}
+
+#[test]
+fn a_fixture_is_where_its_parent_puts_it_and_a_prop_has_none() {
+    let mut app = game(64.0);
+    let parent = app.world_mut().spawn(Transform::from_xyz(10.0, 0.0, 0.0)).id();
+    let wall = MujocoFixture::new(Solid::Cuboid { half_extents: Vec3::new(1.0, 1.0, 0.1) });
+    app.world_mut().spawn((wall, Transform::from_xyz(0.0, 1.0, 4.0), ChildOf(parent)));
+    let crate_ = MujocoProp::new(Prop::cube(0.4, 3.0));
+    let crate_ = app.world_mut().spawn((crate_, Transform::from_xyz(0.0, 0.2, 2.0), ChildOf(parent))).id();
+    spawn(&mut app, Vec3::ZERO);
+    run(&mut app, 0.5);
+    let world = app.world().resource::<MujocoWorld>().world().expect("a world");
+    let fixture = world.fixtures().next().expect("a wall");
+    let at = world.fixture(fixture).expect("a wall").position;
+    assert!(at.distance(Vec3::new(10.0, -4.0, 1.0)) < 1e-4, "{at}");
+    assert!(world.props().next().is_none() && app.world().get::<MujocoPropBody>(crate_).is_none());
+}
+
+#[test]
+fn a_prop_despawned_while_it_comes_in_leaves_nothing_behind() {
+    let mut app = game(64.0);
+    spawn(&mut app, Vec3::ZERO);
+    run(&mut app, 0.5);
+    app.add_observer(|added: On<Add<MujocoPropBody>>, mut commands: Commands| {
+        commands.entity(added.entity).try_despawn();
+    });
+    // The second is gone when the first comes in, and both leave the world.
+    let at = |x: f32| (MujocoProp::new(Prop::cube(0.4, 3.0)), Transform::from_xyz(x, 0.2, 5.0));
+    let first = app.world_mut().spawn((at(0.0).0, Transform::default())).id();
+    app.world_mut().spawn((at(4.0), ChildOf(first)));
+    run(&mut app, 0.5);
+    let world = app.world().resource::<MujocoWorld>().world().expect("a world");
+    assert_eq!(world.props().count(), 0);
+}
+
+#[test]
 fn pushes_despawn_and_a_removed_component() {
     let mut app = game(64.0);
     let [character, other] = [0.0, 4.0].map(|x| spawn(&mut app, Vec3::new(x, 0.0, 0.0)));
@@ -165,10 +221,12 @@ fn a_bad_transform_is_refused_and_a_good_one_puts_it_there() {
     let mut app = game(64.0);
     let character = spawn(&mut app, Vec3::ZERO);
     run(&mut app, 0.5);
-    for (index, bad) in [f32::NAN, 1e9].into_iter().enumerate() {
+    for (index, (bad, words)) in [(f32::NAN, "finite Transform"), (1e9, "can stand")].into_iter().enumerate()
+    {
         app.world_mut().entity_mut(character).insert(Transform::from_xyz(bad, 0.0, 0.0));
         run(&mut app, 0.5);
         assert_eq!(heard(&app).errors.len(), index + 1, "{:?}", heard(&app).errors);
+        assert!(heard(&app).errors[index].contains(words), "{:?}", heard(&app).errors);
         assert!(place(&app, character).length() < 0.5);
     }
     let there = Vec3::new(-7.0, 0.0, 5.0);

@@ -1,18 +1,18 @@
 //! Bodies come into the MuJoCo world with a character and leave with it.
 
-use std::collections::HashSet;
+use std::collections::HashMap;
 use std::sync::Arc;
 
 use bevy::prelude::*;
 use physics_bridge::{Character, CharacterHandle, Model, World, WorldError};
 use policy_core::contract::Pose;
 use policy_core::glam::Vec2;
-use policy_core::{CharacterState, FixedRate, Heading};
+use policy_core::{CharacterPack, CharacterState, FixedRate, Heading};
 
 use crate::axes;
-use crate::body::{self, BodyPose, PolicyBodies};
+use crate::body::{self, BodyPose, PolicyBodies, is_moved};
 use crate::character::{PolicyCharacter, PolicyController};
-use crate::messages::{CharacterError, CharacterProblem};
+use crate::messages::{CharacterError, CharacterProblem, Reported};
 
 use super::place::poses;
 use super::{Described, Leaving, MujocoBody, MujocoWorld};
@@ -35,6 +35,12 @@ struct Arriving {
     heading: Heading,
 }
 
+/// What was refused of a character that waits. It is tried again when its pack or its place is another.
+pub(super) struct Refused {
+    pack: Arc<CharacterPack>,
+    place: Transform,
+}
+
 /// Puts characters in whose pack is loaded, and takes out what left.
 pub(super) fn put_in(
     mut commands: Commands,
@@ -43,40 +49,49 @@ pub(super) fn put_in(
         (With<PolicyCharacter>, Without<MujocoBody>),
     >,
     mut own: ResMut<MujocoWorld>,
-    mut reported: Local<HashSet<Entity>>,
+    (mut tried, mut reported): (Local<HashMap<Entity, Refused>>, Local<Reported>),
     mut errors: MessageWriter<CharacterError>,
 ) {
-    reported.retain(|&entity| waiting.contains(entity));
+    reported.keep(|entity| waiting.contains(entity));
+    tried.retain(|&entity, refused| {
+        let now = waiting.get(entity);
+        now.is_ok_and(|(_, controller, place)| {
+            Arc::ptr_eq(controller.controller.pack(), &refused.pack) && !is_moved(&refused.place, place)
+        })
+    });
     let mut arriving = Vec::new();
     let mut refused = Vec::new();
-    for (character, controller, transform) in &waiting {
+    for (character, controller, transform) in waiting.iter().filter(|(new, ..)| !tried.contains_key(new)) {
         match arrive(&mut own, character, controller, transform) {
             Ok(wanted) => arriving.push(wanted),
             Err(problem) => refused.push((character, problem)),
         }
     }
-    match exchange(&mut own, &arriving) {
-        Err(error) => {
-            for wanted in &arriving {
-                refused.push((wanted.character, CharacterProblem::Body { message: error.to_string() }));
+    let outcomes = exchange_all(&mut own, &arriving);
+    for (wanted, outcome) in arriving.into_iter().zip(outcomes) {
+        match (outcome, waiting.get_mut(wanted.character)) {
+            (Ok(handle), Ok((_, mut controller, transform))) => {
+                embody(&mut commands, &own, wanted, handle, &mut controller, transform);
             }
-        }
-        Ok(handles) => {
-            for (wanted, handle) in arriving.into_iter().zip(handles) {
-                let outcome = handle.map_err(|error| CharacterProblem::Body { message: error.to_string() });
-                match (outcome, waiting.get_mut(wanted.character)) {
-                    (Ok(handle), Ok((_, mut controller, transform))) => {
-                        embody(&mut commands, &own, wanted, handle, &mut controller, transform);
-                    }
-                    (Err(problem), _) => refused.push((wanted.character, problem)),
-                    (Ok(_), Err(_)) => {}
-                }
-            }
+            (Err(message), _) => refused.push((wanted.character, CharacterProblem::Body { message })),
+            (Ok(_), Err(_)) => {}
         }
     }
     for (character, problem) in refused {
-        if reported.insert(character) {
-            errors.write(problem.of(character));
+        reported.write(problem, character, &mut errors);
+        let Ok((_, controller, &place)) = waiting.get(character) else { continue };
+        tried.insert(character, Refused { pack: Arc::clone(controller.controller.pack()), place });
+    }
+}
+
+/// Lets characters in, and what left out: in one edit, or in one for each character when MuJoCo refuses that.
+fn exchange_all(own: &mut MujocoWorld, arriving: &[Arriving]) -> Vec<Result<CharacterHandle, String>> {
+    match exchange(own, arriving) {
+        Ok(handles) => handles.into_iter().map(|handle| handle.map_err(|error| error.to_string())).collect(),
+        Err(error) if arriving.len() < 2 => arriving.iter().map(|_| Err(error.to_string())).collect(),
+        Err(_) => {
+            let alone = arriving.iter().flat_map(|wanted| exchange_all(own, std::slice::from_ref(wanted)));
+            alone.collect()
         }
     }
 }
@@ -105,6 +120,7 @@ fn exchange(
     if arriving.is_empty() && own.leaving.is_empty() {
         return Ok(Vec::new());
     }
+    let is_new = own.world.is_none();
     if let (None, Some(first)) = (&own.world, arriving.first()) {
         let ground = first.described.model.with_terrain(own.terrain)?;
         own.rate = FixedRate::new(ground.control_hz());
@@ -129,6 +145,9 @@ fn exchange(
     });
     if result.is_err() {
         own.leaving = leaving;
+        if is_new {
+            own.world = None;
+        }
     }
     result
 }
@@ -153,13 +172,24 @@ fn embody(
     for (&entity, &at) in entities.iter().zip(&at[1..]) {
         let mut pose = BodyPose::default();
         pose.jump(at);
-        commands.entity(entity).insert(pose);
+        commands.entity(entity).try_insert(pose);
     }
     let mut pose = BodyPose { written: Some(*transform), ..BodyPose::default() };
     pose.jump(at[0]);
     let pack = Arc::clone(controller.controller.pack());
     let body = MujocoBody { handle, pack, entities, before: at.clone(), after: at };
-    commands.entity(wanted.character).insert((body, pose));
+    let character = wanted.character;
+    commands.queue(move |world: &mut bevy::prelude::World| {
+        if let Ok(mut character) = world.get_entity_mut(character) {
+            character.insert((body, pose));
+            return;
+        }
+        // The game has despawned it by now.
+        for entity in body.entities {
+            world.try_despawn(entity).ok();
+        }
+        world.resource_mut::<MujocoWorld>().leaving.push(Leaving::Character(body.handle));
+    });
 }
 
 /// Takes the body out of the world when its character is despawned or loses it.
@@ -193,11 +223,11 @@ pub(super) fn forget(removed: On<Remove<PolicyCharacter>>, mut commands: Command
 
 /// Gives a character the body of its new pack, in the pose that it has.
 pub(super) fn reload(
-    mut characters: Query<(Entity, &PolicyController, &mut MujocoBody), With<PolicyCharacter>>,
+    mut characters: Query<(Entity, &mut PolicyController, &mut MujocoBody), With<PolicyCharacter>>,
     mut own: ResMut<MujocoWorld>,
     mut errors: MessageWriter<CharacterError>,
 ) {
-    for (entity, controller, mut body) in &mut characters {
+    for (entity, mut controller, mut body) in &mut characters {
         let pack = controller.controller.pack();
         if Arc::ptr_eq(pack, &body.pack) {
             continue;
@@ -207,19 +237,22 @@ pub(super) fn reload(
         if same_body {
             continue;
         }
-        if let Err(message) = replace(&mut own, &mut body, pack) {
-            errors.write(CharacterProblem::Body { message }.of(entity));
+        match replace(&mut own, &mut body, pack) {
+            Ok(rest) => controller.rest = rest,
+            Err(message) => {
+                errors.write(CharacterProblem::Body { message }.of(entity));
+            }
         }
     }
 }
 
-/// Puts the body of another pack in the place of a character's.
+/// Puts the body of another pack in the place of a character's. Returns what that senses with all joints at zero.
 fn replace(
     own: &mut MujocoWorld,
     body: &mut MujocoBody,
-    pack: &Arc<policy_core::CharacterPack>,
-) -> Result<(), String> {
-    let model = own.described(pack).map_err(|error| error.to_string())?.model;
+    pack: &Arc<CharacterPack>,
+) -> Result<CharacterState, String> {
+    let Described { model, rest } = own.described(pack).map_err(|error| error.to_string())?;
     let world = own.world.as_mut().ok_or("the world is gone")?;
     let mut kept = Pose::new(model.skeleton());
     world.pose_into(body.handle, &mut kept).map_err(|error| error.to_string())?;
@@ -229,5 +262,6 @@ fn replace(
         edit.add_character(&model, x, y, Heading::FORWARD, 0.0)
     });
     body.handle = exchanged.map_err(|error| error.to_string())?;
-    world.set_pose(body.handle, &kept.qpos, &kept.qvel).map_err(|error| error.to_string())
+    world.set_pose(body.handle, &kept.qpos, &kept.qvel).map_err(|error| error.to_string())?;
+    Ok(rest)
 }

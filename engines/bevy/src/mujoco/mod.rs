@@ -6,6 +6,7 @@
 
 mod insert;
 mod place;
+mod put_things;
 mod step;
 mod things;
 
@@ -83,13 +84,15 @@ impl MujocoWorld {
         }
     }
 
-    /// The world, z up, to look for contacts, cast rays, save; `None` before the first character.
+    /// The world, z up, to look for contacts, read motions, save; `None` before the first character. Rays need
+    /// [`MujocoWorld::world_mut`].
     #[must_use]
     pub fn world(&self) -> Option<&World> {
         self.world.as_ref()
     }
 
-    /// The world, to push, join props, restore. Characters and props that are removed here are reported and built anew.
+    /// The world, to push, join props, restore. A character that is removed here is reported and comes in again; a prop
+    /// is reported and stays out until its component is inserted anew.
     #[must_use]
     pub fn world_mut(&mut self) -> Option<&mut World> {
         self.world.as_mut()
@@ -152,6 +155,8 @@ impl PolicyMujocoPlugin {
 impl Plugin for PolicyMujocoPlugin {
     fn build(&self, app: &mut App) {
         app.insert_resource(MujocoWorld::new(self.terrain))
+            .register_type::<MujocoProp>()
+            .register_type::<MujocoFixture>()
             .add_message::<MujocoRefusal>()
             .add_observer(insert::take_out)
             .add_observer(insert::forget)
@@ -172,7 +177,7 @@ impl Plugin for PolicyMujocoPlugin {
                     // Bodies are there from now on.
                     ApplyDeferred,
                     things::try_again,
-                    things::put_in,
+                    put_things::put_in,
                     things::teleport,
                     place::teleport,
                     insert::reload,

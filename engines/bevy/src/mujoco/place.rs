@@ -3,7 +3,7 @@
 use bevy::prelude::*;
 
 use crate::axes;
-use crate::body::{self, BodyPose, PolicyBody};
+use crate::body::{self, BodyPose, PolicyBody, is_moved};
 use crate::character::PolicyController;
 use crate::messages::{CharacterError, CharacterProblem};
 
@@ -24,7 +24,7 @@ pub(super) fn put_back(
     mut errors: MessageWriter<CharacterError>,
 ) {
     for character in &posed {
-        commands.entity(character).insert(BodyPose::default());
+        commands.entity(character).try_insert(BodyPose::default());
         errors.write(CharacterProblem::Component { component: "BodyPose" }.of(character));
     }
     for (character, mut own, mut controller) in &mut characters {
@@ -61,12 +61,17 @@ pub(super) fn teleport(
 ) {
     let Some(world) = &mut own.world else { return };
     for (entity, mut transform, mut pose, mut body, mut controller) in &mut characters {
-        let Some(written) = pose.written.filter(|written| *written != *transform) else { continue };
+        let Some(written) = pose.written.filter(|written| is_moved(written, &transform)) else { continue };
         let point = axes::ground_from_bevy(transform.translation);
         let heading = axes::heading_from_bevy(transform.rotation);
-        let finite = transform.translation.is_finite() && transform.rotation.is_finite();
-        if !finite || world.stand_at(body.handle, point.x, point.y, heading, 0.0).is_err() {
-            errors.write(CharacterProblem::Transform { found: *transform }.of(entity));
+        let placed = if transform.translation.is_finite() && transform.rotation.is_finite() {
+            let stood = world.stand_at(body.handle, point.x, point.y, heading, 0.0);
+            stood.map_err(|error| CharacterProblem::Place { message: error.to_string() })
+        } else {
+            Err(CharacterProblem::Transform { found: *transform })
+        };
+        if let Err(problem) = placed {
+            errors.write(problem.of(entity));
             *transform = written;
             continue;
         }

@@ -31,7 +31,7 @@ pub(super) fn sense(
             controller.due = 0;
             errors.write(CharacterProblem::Removed { message: error.to_string() }.of(entity));
             // It comes in again in the next step, where its `Transform` says.
-            commands.entity(entity).remove::<MujocoBody>();
+            commands.entity(entity).try_remove::<MujocoBody>();
         }
     }
 }
@@ -99,7 +99,7 @@ pub(super) fn step(
             };
             errors.write(CharacterProblem::Diverged { message }.of(entity));
             if divergence.remedy == Remedy::TakenOut {
-                commands.entity(entity).remove::<MujocoBody>();
+                commands.entity(entity).try_remove::<MujocoBody>();
                 continue;
             }
         }

@@ -1,20 +1,24 @@
 //! Props and fixtures of the MuJoCo world as components.
 
 use bevy::prelude::*;
-use physics_bridge::{Fixture, FixtureHandle, FixtureShape, Motion, Prop, PropHandle, Solid};
+use physics_bridge::{FixtureHandle, FixtureShape, Prop, PropHandle, Solid};
 
 use crate::axes;
-use crate::body::BodyPose;
+use crate::body::{BodyPose, is_moved};
 
+use super::put_things::motion;
 use super::step::between;
 use super::{Leaving, MujocoWorld};
 
 /// Something that moves in the MuJoCo world: a crate, a ball. Its `Transform` is written by the plug-in; writing another one
 /// puts it there, at rest. It comes in with the world, which the first character makes.
 ///
-/// The axes of its shape are physics-bridge's: capsules and cylinders lie along z. Changing the component of a prop that is
-/// in the world has no effect.
-#[derive(Component, Clone, Debug)]
+/// The axes of its shape are physics-bridge's: capsules and cylinders lie along z. Its size is that of the shape, whatever
+/// the scale of its `Transform`. It must have no parent. Changing the component of a prop that is in the world has no
+/// effect.
+#[derive(Component, Reflect, Clone, Debug)]
+#[reflect(opaque)]
+#[reflect(Component)]
 #[require(Transform, BodyPose)]
 pub struct MujocoProp {
     /// Shape, mass, friction.
@@ -37,8 +41,11 @@ impl MujocoProp {
     }
 }
 
-/// Something that never moves in the MuJoCo world: a ramp, a wall. It is where its `Transform` is when it comes in.
-#[derive(Component, Clone, Debug)]
+/// Something that never moves in the MuJoCo world: a ramp, a wall. It is where its `Transform`, with those of its parents,
+/// is when it comes in. Its size is that of the shape, whatever the scale.
+#[derive(Component, Reflect, Clone, Debug)]
+#[reflect(opaque)]
+#[reflect(Component)]
 #[require(Transform)]
 pub struct MujocoFixture {
     /// Its shape, in physics-bridge's axes.
@@ -65,6 +72,11 @@ pub struct MujocoPropBody {
 }
 
 impl MujocoPropBody {
+    /// A prop that has just come in.
+    pub(super) fn at(handle: PropHandle, at: Isometry3d) -> Self {
+        Self { handle, before: at, after: at }
+    }
+
     /// Names the prop in [`MujocoWorld::world`].
     #[must_use]
     pub fn handle(&self) -> PropHandle {
@@ -74,16 +86,16 @@ impl MujocoPropBody {
 
 /// A fixture that is in the world.
 #[derive(Component)]
-pub(super) struct FixtureInWorld(FixtureHandle);
+pub(super) struct FixtureInWorld(pub FixtureHandle);
 
-/// MuJoCo refuses a prop or a fixture, or has taken a prop out. The entity stays, without a body, until its component is
-/// inserted anew. All are logged.
+/// MuJoCo refuses a prop, a fixture or a place for a prop, or a prop was taken out. An entity that is not in the world
+/// stays without a body until its component is inserted anew. All are logged.
 #[derive(Message, Clone, Debug, thiserror::Error)]
-#[error("{entity} is not in the MuJoCo world: {message}")]
+#[error("prop or fixture {entity}: {message}")]
 pub struct MujocoRefusal {
     /// The prop or fixture.
     pub entity: Entity,
-    /// Why.
+    /// What became of it, and why.
     pub message: String,
 }
 
@@ -99,9 +111,10 @@ pub(super) fn teleport(
 ) {
     let Some(world) = &mut own.world else { return };
     for (entity, mut body, mut pose, mut transform) in &mut props {
-        let Some(written) = pose.written.filter(|written| *written != *transform) else { continue };
+        let Some(written) = pose.written.filter(|written| is_moved(written, &transform)) else { continue };
         if let Err(error) = world.place_prop(body.handle, motion(&transform, Vec3::ZERO)) {
-            refusals.write(MujocoRefusal { entity, message: error.to_string() });
+            let message = format!("it stays where it was: {error}");
+            refusals.write(MujocoRefusal { entity, message });
             *transform = written;
             continue;
         }
@@ -118,78 +131,7 @@ pub(super) fn try_again(
     changed: Query<Entity, (With<Refused>, Or<(Changed<MujocoProp>, Changed<MujocoFixture>)>)>,
 ) {
     for entity in &changed {
-        commands.entity(entity).remove::<Refused>();
-    }
-}
-
-/// Puts in props and fixtures, all in one edit.
-pub(super) fn put_in(
-    mut commands: Commands,
-    props: Query<(Entity, &MujocoProp, &Transform), (Without<MujocoPropBody>, Without<Refused>)>,
-    fixtures: Query<(Entity, &MujocoFixture, &Transform), (Without<FixtureInWorld>, Without<Refused>)>,
-    mut own: ResMut<MujocoWorld>,
-    mut refusals: MessageWriter<MujocoRefusal>,
-) {
-    let Some(world) = own.world.as_mut().filter(|_| !props.is_empty() || !fixtures.is_empty()) else {
-        return;
-    };
-    let mut refuse = |commands: &mut Commands, entity: Entity, message: String| {
-        commands.entity(entity).insert(Refused);
-        refusals.write(MujocoRefusal { entity, message });
-    };
-    let added = world.edit(|edit| {
-        let mut add_prop = |(entity, wanted, transform): (Entity, &MujocoProp, &Transform)| {
-            (entity, *transform, edit.add_prop(wanted.prop.clone(), motion(transform, wanted.velocity)))
-        };
-        let props: Vec<_> = props.iter().map(&mut add_prop).collect();
-        let mut add_fixture = |(entity, fixture, transform): (Entity, &MujocoFixture, &Transform)| {
-            (entity, edit.add_fixture(placed(fixture, transform)))
-        };
-        Ok((props, fixtures.iter().map(&mut add_fixture).collect::<Vec<_>>()))
-    });
-    let (new_props, new_fixtures) = match added {
-        Ok(added) => added,
-        Err(error) => {
-            let things = props.iter().map(|new| new.0).chain(fixtures.iter().map(|new| new.0));
-            things.for_each(|entity| refuse(&mut commands, entity, error.to_string()));
-            return;
-        }
-    };
-    for (entity, transform, handle) in new_props {
-        match handle {
-            Ok(handle) => {
-                let at = transform.to_isometry();
-                let mut pose = BodyPose { written: Some(transform), ..BodyPose::default() };
-                pose.jump(at);
-                commands.entity(entity).insert((MujocoPropBody { handle, before: at, after: at }, pose));
-            }
-            Err(error) => refuse(&mut commands, entity, error.to_string()),
-        }
-    }
-    for (entity, handle) in new_fixtures {
-        match handle {
-            Ok(handle) => {
-                commands.entity(entity).insert(FixtureInWorld(handle));
-            }
-            Err(error) => refuse(&mut commands, entity, error.to_string()),
-        }
-    }
-}
-
-/// Where a prop is, in the policies' world.
-fn motion(transform: &Transform, velocity: Vec3) -> Motion {
-    Motion {
-        rotation: axes::rotation_from_bevy(transform.rotation),
-        ..Motion::at(axes::from_bevy(transform.translation)).moving(axes::from_bevy(velocity))
-    }
-}
-
-fn placed(fixture: &MujocoFixture, transform: &Transform) -> Fixture {
-    Fixture {
-        shape: fixture.shape.clone(),
-        position: axes::from_bevy(transform.translation),
-        rotation: axes::rotation_from_bevy(transform.rotation),
-        friction: fixture.friction,
+        commands.entity(entity).try_remove::<Refused>();
     }
 }
 
@@ -206,8 +148,9 @@ pub(super) fn mirror(
             let motion = match world.motion(body.handle) {
                 Ok(motion) => motion,
                 Err(error) => {
-                    refusals.write(MujocoRefusal { entity, message: error.to_string() });
-                    commands.entity(entity).remove::<MujocoPropBody>().insert(Refused);
+                    let message = format!("it was taken out of the MuJoCo world: {error}");
+                    refusals.write(MujocoRefusal { entity, message });
+                    commands.entity(entity).try_remove::<MujocoPropBody>().try_insert(Refused);
                     continue;
                 }
             };
