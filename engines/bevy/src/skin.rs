@@ -21,6 +21,7 @@ const POLICY_FROM_GLTF: Quat = Quat::from_xyzw(0.5, 0.5, 0.5, 0.5);
 #[cfg_attr(feature = "render", require(Visibility))]
 pub struct PolicySkin {
     /// The character.
+    #[entities]
     pub character: Entity,
     /// Pairs of body and bone whose names differ.
     pub renamed: Vec<(String, String)>,
@@ -46,8 +47,10 @@ struct Node {
     entity: Entity,
     /// Index of its parent; `None` below the skin itself.
     parent: Option<usize>,
-    /// Index of its body, and the bone's rotation in the body's frame.
-    body: Option<(usize, Quat)>,
+    /// Its rotation in the model while all is at rest.
+    rest: Quat,
+    /// Index of its body.
+    body: Option<usize>,
 }
 
 /// Lets skins follow their characters.
@@ -61,21 +64,25 @@ impl Plugin for PolicySkinPlugin {
     }
 }
 
-/// Binds skins whose bones are there.
+/// Binds skins whose bones are there, and binds them again when bones are gone: a glTF that was loaded again has new ones.
 fn bind(
     mut commands: Commands,
-    skins: Query<(Entity, &PolicySkin), Without<SkinBinding>>,
+    skins: Query<(Entity, &PolicySkin, Option<&SkinBinding>)>,
     characters: Query<&PolicyController, With<PolicyBodies>>,
     children: Query<&'static Children>,
     nodes: Query<(&'static Transform, Option<&'static Name>)>,
 ) {
-    for (entity, skin) in &skins {
+    for (entity, skin, bound) in &skins {
+        let bound = bound.map_or(&[][..], |binding| &binding.0);
+        if !bound.is_empty() && bound.iter().all(|node| nodes.contains(node.entity)) {
+            continue;
+        }
         let Ok(controller) = characters.get(skin.character) else { continue };
         let mut binding = Vec::new();
-        let tree = Tree { skin, controller, children: &children, nodes: &nodes };
+        let tree = Tree { skin, controller, bound, children: &children, nodes: &nodes };
         tree.add(entity, None, Quat::IDENTITY, &mut binding);
         if binding.iter().any(|node| node.body.is_some()) {
-            commands.entity(entity).insert(SkinBinding(binding));
+            commands.entity(entity).try_insert(SkinBinding(binding));
         }
     }
 }
@@ -83,46 +90,51 @@ fn bind(
 struct Tree<'a, 'w, 's> {
     skin: &'a PolicySkin,
     controller: &'a PolicyController,
+    /// What was bound before.
+    bound: &'a [Node],
     children: &'a Query<'w, 's, &'static Children>,
     nodes: &'a Query<'w, 's, (&'static Transform, Option<&'static Name>)>,
 }
 
 impl Tree<'_, '_, '_> {
-    /// Adds everything below an entity whose rotation in the model is `rotation`.
-    fn add(&self, above: Entity, parent: Option<usize>, rotation: Quat, out: &mut Vec<Node>) {
+    /// Adds everything below an entity whose rotation in the model is `above_rest`.
+    fn add(&self, above: Entity, parent: Option<usize>, above_rest: Quat, out: &mut Vec<Node>) {
         let skeleton = self.controller.controller.pack().skeleton();
         for &entity in self.children.get(above).into_iter().flatten() {
             let Ok((transform, name)) = self.nodes.get(entity) else { continue };
-            let rotation = rotation * transform.rotation;
+            // What was bound before is no longer at rest.
+            let known = self.bound.iter().find(|node| node.entity == entity);
+            let rest = known.map_or(above_rest * transform.rotation, |node| node.rest);
             let named = |body: &str| name.is_some_and(|name| name.as_str() == self.skin.bone(body));
             let body = skeleton.bodies().iter().position(|body| named(&body.name));
-            let body = body.map(|body| (body, offset(&self.controller.rest, body, rotation)));
-            out.push(Node { entity, parent, body });
-            self.add(entity, Some(out.len() - 1), rotation, out);
+            out.push(Node { entity, parent, rest, body });
+            self.add(entity, Some(out.len() - 1), rest, out);
         }
     }
 }
 
 /// Rotation of a bone in the frame of its body, of the rest poses of both.
-fn offset(rest: &CharacterState, body: usize, bone: Quat) -> Quat {
-    rest.bodies[body].rotation.inverse() * POLICY_FROM_GLTF * bone
+fn offset(rest: &CharacterState, body: usize, bone: Quat) -> Option<Quat> {
+    Some(rest.bodies.get(body)?.rotation.inverse() * POLICY_FROM_GLTF * bone)
 }
 
 /// Writes the `Transform` of bones.
 fn follow(
     skins: Query<(Entity, &PolicySkin, &SkinBinding)>,
-    characters: Query<&PolicyBodies>,
+    characters: Query<(&PolicyBodies, &PolicyController)>,
     parents: Query<&ChildOf>,
     mut transforms: Query<&mut Transform>,
     mut worlds: Local<Vec<GlobalTransform>>,
 ) {
     for (entity, skin, binding) in &skins {
-        let Ok(bodies) = characters.get(skin.character) else { continue };
+        let Ok((bodies, controller)) = characters.get(skin.character) else { continue };
         let own = world(entity, &parents, &transforms);
         worlds.clear();
         for node in &binding.0 {
             let above = node.parent.map_or(own, |parent| worlds[parent]);
-            let place = node.body.and_then(|(body, offset)| {
+            let place = node.body.and_then(|body| {
+                // A pack that was loaded again may have another rest pose.
+                let offset = offset(&controller.rest, body, node.rest)?;
                 let place = transforms.get(*bodies.entities().get(body)?).ok()?;
                 Some((body, place.translation, place.rotation * offset))
             });
