@@ -7,8 +7,8 @@ use crate::body::PolicyBodies;
 use crate::character::{CharacterCommand, PolicyController};
 
 /// What is drawn. A game switches it at any time.
-#[derive(Resource, Reflect, Clone, Copy, Debug, PartialEq, Eq)]
-#[reflect(Resource)]
+#[derive(Resource, Reflect, Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[reflect(Resource, Default)]
 pub struct PolicyGizmos {
     /// Lines from body to body.
     pub skeleton: bool,
@@ -34,7 +34,7 @@ pub struct PolicyDebugPlugin;
 
 impl Plugin for PolicyDebugPlugin {
     fn build(&self, app: &mut App) {
-        app.register_type::<PolicyGizmos>().insert_resource(PolicyGizmos::all(false)).add_systems(
+        app.register_type::<PolicyGizmos>().init_resource::<PolicyGizmos>().add_systems(
             Update,
             (
                 skeletons.run_if(|shown: Res<PolicyGizmos>| shown.skeleton),

@@ -58,7 +58,7 @@ fn show(
         {
             let rapier = context.rigidbody_set.bodies.get(handle);
             let Some(rapier) = rapier.filter(|_| !shown.contains(entity)) else { continue };
-            commands.entity(entity).insert(Shown);
+            commands.entity(entity).try_insert(Shown);
             // Rapier's frame of the root is at its centre of mass; the entity's is the MJCF's.
             let frame_from_rapier = Transform::from_isometry(frame).to_matrix().inverse()
                 * Mat4::from_rotation_translation(*rapier.rotation(), rapier.translation());
@@ -69,12 +69,8 @@ fn show(
                 let at = frame_from_rapier
                     * Mat4::from_rotation_translation(within.rotation, within.translation)
                     * own.to_matrix();
-                commands.spawn((
-                    Mesh3d(meshes.add(mesh)),
-                    MeshMaterial3d(material.clone()),
-                    Transform::from_matrix(at),
-                    ChildOf(entity),
-                ));
+                let mesh = (Mesh3d(meshes.add(mesh)), MeshMaterial3d(material.clone()));
+                spawn_below(&mut commands, entity, (mesh, Transform::from_matrix(at)));
             }
         }
     }
@@ -99,10 +95,13 @@ fn show_in_mujoco(
             continue;
         }
         let material = materials.add(StandardMaterial { base_color: wanted.color, ..default() });
+        // Also those without a shape, which would be looked at again in each frame.
+        for &entity in bodies.entities() {
+            commands.entity(entity).try_insert(Shown);
+        }
         for shape in model.shapes() {
             let entity = bodies.entities().get(shape.body.index());
             let Some(&entity) = entity.filter(|&&entity| !shown.contains(entity)) else { continue };
-            commands.entity(entity).insert(Shown);
             let (mesh, turn): (Mesh, Quat) = match shape.kind {
                 ShapeKind::Sphere { radius } => (Sphere::new(radius).into(), Quat::IDENTITY),
                 ShapeKind::Capsule { radius, half_length } => {
@@ -114,14 +113,20 @@ fn show_in_mujoco(
                 }
                 _ => continue,
             };
-            commands.spawn((
-                Mesh3d(meshes.add(mesh)),
-                MeshMaterial3d(material.clone()),
-                Transform::from_translation(shape.position).with_rotation(shape.rotation * turn),
-                ChildOf(entity),
-            ));
+            let mesh = (Mesh3d(meshes.add(mesh)), MeshMaterial3d(material.clone()));
+            let at = Transform::from_translation(shape.position).with_rotation(shape.rotation * turn);
+            spawn_below(&mut commands, entity, (mesh, at));
         }
     }
+}
+
+/// Spawns a child, unless the game has despawned the parent by now.
+fn spawn_below(commands: &mut Commands, parent: Entity, child: impl Bundle) {
+    commands.queue(move |world: &mut World| {
+        if world.get_entity(parent).is_ok() {
+            world.spawn((child, ChildOf(parent)));
+        }
+    });
 }
 
 /// The mesh of a shape, and where it lies in the collider.
