@@ -6,7 +6,7 @@ use std::num::NonZeroUsize;
 
 use common::{QUADRUPED, body, hash, quadruped, run};
 use glam::Vec3;
-use physics_bridge::{BodyPoses, Character, Crowd, Model, ReplayFile};
+use physics_bridge::{BodyPoses, Character, Crowd, Model, ModelError, ReplayFile, World};
 use policy_core::training::{JointId, Roles};
 use policy_core::{BodyId, CharacterState, Heading, JointTargets, Skeleton};
 
@@ -152,4 +152,66 @@ fn a_skeleton_of_another_order_is_honoured() {
         second.step().unwrap();
     }
     assert_eq!(hash(&first), hash(&second));
+}
+
+/// A character of one hinge, made of these two geoms.
+fn rocker(body: &str, foot: &str) -> String {
+    format!(
+        r#"<mujoco>
+  <option timestep="0.00555555555"/>
+  <asset><mesh name="wedge" vertex="0 0 0  .3 0 0  0 .3 0  0 0 .3"/></asset>
+  <worldbody>
+    <geom name="floor" type="plane" size="0 0 1"/>
+    <body name="trunk" pos="0 0 1">
+      <freejoint/>
+      <inertial pos="0 0 0" mass="3" diaginertia=".1 .1 .1"/>
+      {body}
+      <body name="foot" pos="0 0 -.5">
+        <joint name="ankle" axis="0 1 0" range="-30 30"/>
+        <inertial pos="0 0 0" mass="1" diaginertia=".1 .1 .1"/>
+        {foot}
+      </body>
+    </body>
+  </worldbody>
+  <actuator><position joint="ankle" kp="20" forcerange="-10 10"/></actuator>
+</mujoco>"#
+    )
+}
+
+#[test]
+fn a_character_of_cylinders_ellipsoids_or_meshes_stands() {
+    let cylinder = r#"<geom type="cylinder" size=".1 .2"/>"#;
+    let ellipsoid = r#"<geom type="ellipsoid" size=".1 .2 .3"/>"#;
+    let mesh = r#"<geom type="mesh" mesh="wedge"/>"#;
+    let cases = [("", cylinder, 0.7), (cylinder, ellipsoid, 0.8), ("", mesh, 0.5)];
+    for (body, foot, reach) in cases {
+        let model = Model::from_mjcf(&rocker(body, foot)).unwrap();
+        let mut character = Character::new(&model);
+        character.stand_at(1.0, 2.0, Heading::FORWARD, 0.0).unwrap();
+        assert!(character.clearance().abs() < 1e-4, "{body}{foot}: {}", character.clearance());
+        let height = character.pose().qpos[2];
+        assert!((height - reach).abs() < 1e-4, "{body}{foot}: {height}");
+        let mut world = World::new(&model).unwrap();
+        let stood = world.edit(|edit| edit.add_character(&model, 1.0, 2.0, Heading::FORWARD, 0.0)).unwrap();
+        let mut pose = character.pose();
+        world.pose_into(stood, &mut pose).unwrap();
+        assert!((pose.qpos[2] - height).abs() < 1e-4, "{body}{foot}: {}", pose.qpos[2]);
+    }
+    let error = Model::from_mjcf(&rocker("", "")).unwrap_err();
+    assert!(matches!(error, ModelError::NoGeoms), "{error}");
+}
+
+#[test]
+fn longer_steps_are_longer_or_refused() {
+    let text = rocker(r#"<geom type="sphere" size=".1"/>"#, "");
+    let longer = Model::from_mjcf(&text).unwrap().with_time_step(2.0).unwrap();
+    assert!((longer.timestep_secs() - 0.0111111111).abs() < 1e-9 && longer.substeps() == 3);
+    for other in [r#"timestep='0.00555555555'"#, "\ttimestep=\"0.00555555555\""] {
+        let model = Model::from_mjcf(
+            &text.replace(r#" timestep="0.00555555555""#, &format!(" {other}")).replace(" \t", "\t"),
+        )
+        .unwrap();
+        let error = model.with_time_step(2.0).unwrap_err();
+        assert!(matches!(error, ModelError::TimestepText { .. }), "{error}");
+    }
 }

@@ -80,7 +80,8 @@ impl Character {
     }
 
     /// Height of the lowest point of the character above the ground below that point, metres; negative when
-    /// it is in the ground. Exact on flat ground, close on a terrain.
+    /// it is in the ground. Exact on flat ground for spheres, capsules, boxes and meshes, close on a terrain. Of other geoms the
+    /// boxes around them count.
     #[must_use]
     pub fn clearance(&self) -> f32 {
         self.clearance_where(|_| true)
@@ -95,14 +96,21 @@ impl Character {
     fn clearance_where(&self, counts: impl Fn(BodyId) -> bool) -> f32 {
         let (centres, matrices) = (self.data.geom_xpos(), self.data.geom_xmat());
         let mut clearance = f64::INFINITY;
+        // MuJoCo's matrices are row by row, glam's column by column.
+        let place =
+            |geom: usize| (DVec3::from(centres[geom]), DMat3::from_cols_array(&matrices[geom]).transpose());
+        let mut touch = |point: DVec3, below: f64| {
+            let ground = self.model.height_at(point.x as f32, point.y as f32);
+            clearance = clearance.min(point.z - below - f64::from(ground));
+        };
+        for bounds in self.model.bounds().iter().filter(|bounds| counts(bounds.body)) {
+            let (centre, world_from_geom) = place(bounds.geom);
+            bounds.low_points(centre, world_from_geom, &mut touch);
+        }
         let shapes = self.model.shapes().iter().zip(self.model.shape_geoms());
         for (shape, &geom) in shapes.filter(|(shape, _)| counts(shape.body)) {
-            // MuJoCo's matrices are row by row, glam's column by column.
-            let world_from_shape = DMat3::from_cols_array(&matrices[geom]).transpose();
-            shape.kind.low_points(DVec3::from(centres[geom]), world_from_shape, |point, below| {
-                let ground = self.model.height_at(point.x as f32, point.y as f32);
-                clearance = clearance.min(point.z - below - f64::from(ground));
-            });
+            let (centre, world_from_shape) = place(geom);
+            shape.kind.low_points(centre, world_from_shape, &mut touch);
         }
         clearance as f32
     }

@@ -11,7 +11,7 @@ use policy_core::{ActuationContract, Skeleton};
 
 use super::ground::Ground;
 use super::layout::Layout;
-use super::shape::Shape;
+use super::shape::{Bounds, Shape};
 use super::terrain::Terrain;
 
 /// Which numbers make up the whole state of a simulation.
@@ -61,6 +61,7 @@ struct Shared {
     ground: Ground,
     shapes: Box<[Shape]>,
     shape_geoms: Box<[usize]>,
+    bounds: Box<[Bounds]>,
     substeps: u32,
     stand: Pose,
     /// Height of the root above flat ground when a standing character touches it, metres.
@@ -154,6 +155,11 @@ impl Model {
     /// MuJoCo's geom of each shape.
     pub(crate) fn shape_geoms(&self) -> &[usize] {
         &self.shared.shape_geoms
+    }
+
+    /// Corners around the geoms that are no shapes.
+    pub(crate) fn bounds(&self) -> &[Bounds] {
+        &self.shared.bounds
     }
 
     /// What it was compiled from.

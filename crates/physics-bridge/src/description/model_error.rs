@@ -139,6 +139,19 @@ pub enum ModelError {
         /// The option in the MJCF, seconds.
         timestep_secs: f64,
     },
+    /// The time step could not be changed in the text.
+    #[error(
+        "expected an option timestep=\"...\" in the MJCF that can be set to {expected} s, found steps of {found} s"
+    )]
+    TimestepText {
+        /// What it should be, seconds.
+        expected: f64,
+        /// What it is all the same, seconds.
+        found: f64,
+    },
+    /// No body has a geom, so nothing could stand on the ground.
+    #[error("expected a geom on at least one body of the character, found none")]
+    NoGeoms,
     /// A motor or sensor reads or acts with a delay.
     #[error("expected motors and sensors without delay, found some with")]
     Delays,

@@ -63,6 +63,68 @@ pub(crate) fn shapes(model: &MjModel, layout: &Layout) -> (Box<[Shape]>, Box<[us
     (found.iter().map(|f| f.0).collect(), found.iter().map(|f| f.1).collect())
 }
 
+/// Corners around a geom that is no [`Shape`], to find the lowest point of a character: those of a mesh, or of the box
+/// around a cylinder or an ellipsoid.
+#[derive(Clone, Debug)]
+pub(crate) struct Bounds {
+    /// The body that it moves with.
+    pub body: BodyId,
+    /// MuJoCo's id of it.
+    pub geom: usize,
+    /// In the frame of the geom, metres.
+    corners: Box<[DVec3]>,
+}
+
+/// The bounds of all other geoms of the bodies that can touch something; of all others when nothing can.
+pub(crate) fn bounds(model: &MjModel, layout: &Layout, shapes: &[Shape]) -> Box<[Bounds]> {
+    let is_shape = |geom: usize| {
+        matches!(
+            model.geom_type()[geom],
+            MjtGeomBase::mjGEOM_SPHERE | MjtGeomBase::mjGEOM_CAPSULE | MjtGeomBase::mjGEOM_BOX
+        )
+    };
+    let of = |geom: usize| {
+        let body = layout.bodies[model.geom_bodyid()[geom] as usize]?;
+        Some(Bounds { body, geom, corners: corners(model, geom) })
+    };
+    let touches =
+        |bounds: &Bounds| model.geom_contype()[bounds.geom] | model.geom_conaffinity()[bounds.geom] != 0;
+    let all: Vec<_> = (0..model.ngeom() as usize).filter(|&geom| !is_shape(geom)).filter_map(of).collect();
+    let solid: Vec<_> = all.iter().filter(|bounds| touches(bounds)).cloned().collect();
+    if solid.is_empty() && shapes.is_empty() { all.into() } else { solid.into() }
+}
+
+fn corners(model: &MjModel, geom: usize) -> Box<[DVec3]> {
+    if model.geom_type()[geom] == MjtGeomBase::mjGEOM_MESH {
+        // MuJoCo has compiled the model: a geom that is a mesh has one.
+        let mesh = model.geom_dataid()[geom] as usize;
+        let first = model.mesh_vertadr()[mesh] as usize;
+        let vertices = &model.mesh_vert()[first..][..model.mesh_vertnum()[mesh] as usize];
+        return vertices.iter().map(|&vertex| Vec3::from(vertex).as_dvec3()).collect();
+    }
+    let [x, y, z, half_x, half_y, half_z] = model.geom_aabb()[geom];
+    let (centre, half_extents) = (DVec3::new(x, y, z), DVec3::new(half_x, half_y, half_z));
+    corner_signs().map(|signs| centre + half_extents * signs).collect()
+}
+
+/// The signs of the coordinates of the corners of a box about the origin.
+fn corner_signs() -> impl Iterator<Item = DVec3> {
+    let sign = |corner: u32, axis: u32| if corner >> axis & 1 == 0 { 1.0 } else { -1.0 };
+    (0..8).map(move |corner| DVec3::new(sign(corner, 0), sign(corner, 1), sign(corner, 2)))
+}
+
+impl Bounds {
+    /// Calls `visit` with each corner, world space, of a geom at `centre`.
+    pub(crate) fn low_points(
+        &self,
+        centre: DVec3,
+        world_from_geom: DMat3,
+        mut visit: impl FnMut(DVec3, f64),
+    ) {
+        self.corners.iter().for_each(|&corner| visit(centre + world_from_geom * corner, 0.0));
+    }
+}
+
 impl ShapeKind {
     /// Calls `visit` with each point, world space, that can be the lowest, and how far below it the surface is.
     pub(crate) fn low_points(
@@ -79,9 +141,7 @@ impl ShapeKind {
                 visit(centre - axis, radius.into());
             }
             ShapeKind::Cuboid { half_extents } => {
-                for corner in 0..8 {
-                    let sign = |axis: u32| if corner >> axis & 1 == 0 { 1.0 } else { -1.0 };
-                    let signs = DVec3::new(sign(0), sign(1), sign(2));
+                for signs in corner_signs() {
                     visit(centre + world_from_shape * (half_extents.as_dvec3() * signs), 0.0);
                 }
             }

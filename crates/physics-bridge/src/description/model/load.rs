@@ -14,7 +14,7 @@ use crate::description::ground::Ground;
 use crate::description::layout::Layout;
 use crate::description::model_error::ModelError;
 use crate::description::settings;
-use crate::description::shape::{Shape, shapes};
+use crate::description::shape::{Bounds, Shape, bounds, shapes};
 use crate::description::terrain::Terrain;
 use crate::description::{file, mjcf, skeleton};
 
@@ -39,7 +39,7 @@ impl Model {
     ///
     /// # Errors
     /// When the text is no valid MJCF, asks for files, exhausts memory or time, or is no character: one body that
-    /// floats, every other joint a limited hinge with a position servo that has a symmetric `forcerange` and no
+    /// floats, at least one geom, every other joint a limited hinge with a position servo that has a symmetric `forcerange` and no
     /// `kv`, a `timestep` that divides the control period, a level plane named `floor`.
     pub fn from_mjcf(mjcf: &str) -> Result<Self, ModelError> {
         Self::compile(Source {
@@ -129,10 +129,17 @@ impl Model {
     /// The same character, ground and settings with physics steps that are longer by a factor. Compiles again.
     ///
     /// # Errors
-    /// When a control tick is no whole number of such steps.
+    /// When a control tick is no whole number of such steps, or the MJCF does not say `timestep="..."` with double
+    /// quotation marks after a space, so that the steps can't be found in the text.
     pub fn with_time_step(&self, factor: f64) -> Result<Self, ModelError> {
+        let expected = self.timestep_secs() * factor;
         let mjcf = scaled(self.mjcf(), "timestep", factor).into();
-        Self::compile(Source { mjcf, ..self.shared.source.clone() })?.with_settings(self.settings)
+        let model = Self::compile(Source { mjcf, ..self.shared.source.clone() })?;
+        let found = model.timestep_secs();
+        if (found - expected).abs() > 1e-9 * expected.abs() {
+            return Err(ModelError::TimestepText { expected, found });
+        }
+        model.with_settings(self.settings)
     }
 
     /// Compiles and checks.
@@ -146,6 +153,10 @@ impl Model {
         let substeps = check_options(&base, source.control_hz)?;
         let ground = Ground::of(&base)?;
         let (shapes, shape_geoms) = shapes(&base, &layout);
+        let bounds = bounds(&base, &layout, &shapes);
+        if shapes.is_empty() && bounds.is_empty() {
+            return Err(ModelError::NoGeoms);
+        }
         let mut stand = Pose::new(&skeleton);
         let qpos = match base.name_to_id(MjtObjBase::mjOBJ_KEY, STAND) {
             // The layout fits, so a keyframe has as many numbers as our pose.
@@ -156,7 +167,7 @@ impl Model {
         Pose::check(&stand.qpos, &stand.qvel, skeleton.joint_count())
             .map_err(|error| ModelError::Stand { error })?;
         let physics = Arc::clone(&base);
-        let stand_lift = stand_lift(&base, &layout, &stand, &shapes, &shape_geoms);
+        let stand_lift = stand_lift(&base, &layout, &stand, (&shapes, &shape_geoms), &bounds);
         let shared = Shared {
             source,
             skeleton,
@@ -165,6 +176,7 @@ impl Model {
             ground,
             shapes,
             shape_geoms,
+            bounds,
             substeps,
             stand,
             stand_lift,
@@ -178,21 +190,27 @@ fn stand_lift(
     physics: &Arc<MjModel>,
     layout: &Layout,
     stand: &Pose,
-    shapes: &[Shape],
-    geoms: &[usize],
+    (shapes, geoms): (&[Shape], &[usize]),
+    bounds: &[Bounds],
 ) -> f64 {
     let mut data = MjData::new(Arc::clone(physics));
     layout.write_qpos(&stand.qpos, data.qpos_mut());
     data.kinematics();
     let root = data.xpos()[layout.body_ids[0]][2];
     let mut lowest = f64::INFINITY;
+    // MuJoCo's matrices are row by row, glam's column by column.
+    let place = |geom: usize| {
+        (DVec3::from(data.geom_xpos()[geom]), DMat3::from_cols_array(&data.geom_xmat()[geom]).transpose())
+    };
+    for bounds in bounds {
+        let (centre, world_from_geom) = place(bounds.geom);
+        bounds.low_points(centre, world_from_geom, |point, _| lowest = lowest.min(point.z));
+    }
     for (shape, &geom) in shapes.iter().zip(geoms) {
-        // MuJoCo's matrices are row by row, glam's column by column.
-        let world_from_shape = DMat3::from_cols_array(&data.geom_xmat()[geom]).transpose();
-        let centre = DVec3::from(data.geom_xpos()[geom]);
+        let (centre, world_from_shape) = place(geom);
         shape.kind.low_points(centre, world_from_shape, |point, below| lowest = lowest.min(point.z - below));
     }
-    if lowest.is_finite() { root - lowest } else { 0.0 }
+    root - lowest
 }
 
 /// Checks what stepping relies on. Returns the substeps in a control tick.
