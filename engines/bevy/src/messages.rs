@@ -86,7 +86,7 @@ pub enum CharacterProblem {
     },
     /// A character can't stand where its `Transform` is. It stays where it was, or waits for another one.
     #[error("expected a Transform where the character can stand: {message}")]
-    Place {
+    OutOfReach {
         /// What is wrong with the place.
         message: String,
     },

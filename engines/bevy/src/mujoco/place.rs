@@ -66,7 +66,7 @@ pub(super) fn teleport(
         let heading = axes::heading_from_bevy(transform.rotation);
         let placed = if transform.translation.is_finite() && transform.rotation.is_finite() {
             let stood = world.stand_at(body.handle, point.x, point.y, heading, 0.0);
-            stood.map_err(|error| CharacterProblem::Place { message: error.to_string() })
+            stood.map_err(|error| CharacterProblem::OutOfReach { message: error.to_string() })
         } else {
             Err(CharacterProblem::Transform { found: *transform })
         };

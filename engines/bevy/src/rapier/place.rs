@@ -36,7 +36,7 @@ impl GroundPose {
         let (most, found) = (MAX_DISTANCE_M - REACH_M, transform.translation.length());
         if found > most {
             let message = format!("expected at most {most} m from the origin, found {found} m");
-            return Err(CharacterProblem::Place { message });
+            return Err(CharacterProblem::OutOfReach { message });
         }
         let heading = axes::heading_from_bevy(transform.rotation);
         Ok(Self { point: transform.translation, heading })
