@@ -90,7 +90,7 @@ fn the_same_start_has_the_same_future() {
 fn the_hash_is_that_of_every_machine() {
     let mut character = Character::new(&crane());
     wriggle(&mut character, 60);
-    assert_eq!(format!("{:016x}", hash(&character)), "c81d83c3db574577");
+    assert_eq!(format!("{:016x}", hash(&character)), "63e568771b574577");
 }
 
 #[test]
