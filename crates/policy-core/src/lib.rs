@@ -2,8 +2,9 @@
 //!
 //! Each skill of a character is one small network, a *policy*. Policies that were trained towards each other form a
 //! *graph*, and the straight line between the parameters of two neighbours is itself a good policy. A game moves along
-//! that line with an analog trigger. The method is that of *Lightweight Policy-Space Control for Physics-Based
-//! Characters*. This crate holds what a game needs of it at run time that is not physics, drawing or devices.
+//! that line with an analog trigger. The method is that of [*Policy-space Interpolation for
+//! Physics-based Characters*](https://doi.org/10.1145/3747863) (Rocca, Andrews, Erleben, 2025), also known as *Lightweight Policy-Space
+//! Control for Physics-Based Characters*. This crate holds what a game needs of it at run time that is not physics, drawing or devices.
 //!
 //! ```
 //! use std::sync::Arc;

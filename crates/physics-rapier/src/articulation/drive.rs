@@ -17,9 +17,9 @@ const LIMIT_MARGIN_SECS: f32 = 0.05;
 /// Rapier's substeps in a step with [`Drive::Motors`]. With the four of Rapier's default characters fall more easily.
 const MOTORS_SUBSTEPS: usize = 2;
 
-/// Sweeps of Rapier's solver over the contacts in each substep. With one, legs that touch throw the character down: after
+/// Iterations of Rapier's projected Gauss-Seidel solver over the contacts in each substep. With one, legs that touch throw the character down: after
 /// 27 % of rolls, against 2 % with four. Rapier takes two contacts of one multibody for independent.
-const SWEEPS: usize = 4;
+const PGS_ITERATIONS: usize = 4;
 
 /// Contacts with what is fixed, about as soft as MuJoCo's default ones: a foot that is pressed by 1,000 N gives 5.2 mm, in MuJoCo 5.5 mm, and 0.1 mm
 /// with Rapier's default of 60 Hz and 10. With that default a crawl falls 3.6 times a minute.
@@ -39,7 +39,7 @@ impl Drive {
             Drive::Torques => 1,
             Drive::Motors => MOTORS_SUBSTEPS,
         };
-        parameters.num_internal_pgs_iterations = SWEEPS;
+        parameters.num_internal_pgs_iterations = PGS_ITERATIONS;
         parameters.static_contact_softness = CONTACT_SOFTNESS;
         parameters.normalized_prediction_distance = PREDICTION_METRES / parameters.length_unit;
     }
