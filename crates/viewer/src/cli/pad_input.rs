@@ -19,7 +19,7 @@ pub enum PadInput {
     /// At rest.
     Neutral,
     /// Key frames over time.
-    Script(Script),
+    Script(Box<Script>),
     /// Reports of a device, parsed and cleaned as those of a connected one.
     Recording(Box<VirtualPad>),
 }
@@ -35,7 +35,8 @@ impl PadInput {
             let pad = VirtualPad::new(Recording::load(path)?).with_context(|| path.display().to_string())?;
             return Ok(Self::Recording(Box::new(pad)));
         }
-        Ok(demo.script.as_deref().map(Script::load).transpose()?.map_or(Self::Neutral, Self::Script))
+        let script = demo.script.as_deref().map(Script::load).transpose()?;
+        Ok(script.map_or(Self::Neutral, |script| Self::Script(Box::new(script))))
     }
 
     /// The pad of a second player, where the command line asks for one.
@@ -45,7 +46,7 @@ impl PadInput {
     pub fn load_second(demo: &Demo) -> anyhow::Result<Option<Self>> {
         let Some(path) = &demo.second_script else { return Ok(None) };
         check(path)?;
-        Ok(Some(Self::Script(Script::load(path)?)))
+        Ok(Some(Self::Script(Box::new(Script::load(path)?))))
     }
 
     /// True for a pad that the command line asks for.
