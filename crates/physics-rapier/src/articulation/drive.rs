@@ -41,7 +41,7 @@ impl Drive {
         };
         parameters.num_internal_pgs_iterations = PGS_ITERATIONS;
         parameters.static_contact_softness = CONTACT_SOFTNESS;
-        parameters.normalized_prediction_distance = PREDICTION_METRES / parameters.length_unit;
+        parameters.normalized_prediction_distance = PREDICTION_METRES;
     }
 }
 
