@@ -41,7 +41,7 @@ pub use paths::{measure_coordinates, measure_sweep};
 pub use player::{PlayerReport, ResponseReport};
 pub use progress::Progress;
 pub use push::measure_push;
-pub use report::{Evaluation, ModeReport, PathReport, PushReport, SpeedPoint, evaluate, evaluate_each};
+pub use report::{Evaluation, ModeReport, PathReport, PushReport, SpeedPoint, evaluate};
 pub use rig::Rig;
 pub use section::Section;
 pub use skills::{RateReport, SkillReport, measure_get_up, measure_skill, watch_skill};

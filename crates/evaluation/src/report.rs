@@ -108,26 +108,12 @@ pub struct PushReport {
 }
 
 /// Measures some sections and tells the progress. What a player feels, and skills but for getting up, are measured with `config`. `clips` holds the states of each skill's clips, see
-/// [`clip_states`](super::clip_states); without them there is no pose error.
+/// [`clip_states`](super::clip_states); without them there is no pose error. `after_section` gets what was measured so far after each section, so
+/// that a later one that fails loses nothing.
 ///
 /// # Errors
 /// When the model can't be set on uneven ground, or changed.
 pub fn evaluate(
-    model: &Model,
-    pack: &Arc<CharacterPack>,
-    config: ControllerConfig,
-    (effort, sections): (&Effort, &[Section]),
-    clips: &BTreeMap<String, Vec<CharacterState>>,
-    progress: &Progress,
-) -> Result<Evaluation, EvaluationError> {
-    evaluate_each(model, pack, config, (effort, sections), clips, progress, |_| {})
-}
-
-/// As [`evaluate`]; `after_section` gets what was measured so far after each section, so that a later one that fails loses nothing.
-///
-/// # Errors
-/// As [`evaluate`].
-pub fn evaluate_each(
     model: &Model,
     pack: &Arc<CharacterPack>,
     config: ControllerConfig,

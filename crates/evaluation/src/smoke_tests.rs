@@ -13,7 +13,7 @@ use policy_core::training::{Layer, Normaliser, PackTensors};
 use policy_core::{CharacterPack, ControllerConfig, Mlp, Skeleton};
 use random::Rng;
 
-use super::{Effort, EvalCharacter, Evaluation, PlayerReport, Progress, Section, evaluate_each, table};
+use super::{Effort, EvalCharacter, Evaluation, PlayerReport, Progress, Section, evaluate, table};
 
 const HUMANOID: &str = include_str!("../../../assets/humanoid.xml");
 
@@ -136,7 +136,7 @@ fn measured(engine: Engine, falls: bool, effort: &Effort, sections: &[Section]) 
     let model = physics_bridge::Model::from_mjcf(HUMANOID).unwrap();
     let model = Model::new(&model, engine).unwrap();
     let mut so_far = Vec::new();
-    let evaluation = evaluate_each(
+    let evaluation = evaluate(
         &model,
         &pack(falls),
         ControllerConfig::default(),

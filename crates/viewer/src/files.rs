@@ -30,13 +30,22 @@ pub fn write(path: &Path, bytes: &[u8]) -> io::Result<()> {
 ///
 /// # Errors
 /// When it is no regular file or can't be copied.
-pub fn keep_aside(path: &Path) -> io::Result<PathBuf> {
+fn keep_aside(path: &Path) -> io::Result<PathBuf> {
     check_regular(path).map_err(io::Error::other)?;
     let mut name = path.as_os_str().to_owned();
     name.push(".bad");
     let aside = PathBuf::from(name);
     fs::copy(path, &aside)?;
     Ok(aside)
+}
+
+/// Keeps a file aside that can't be read for this `error`. What to tell the player, and false where it could not be copied: then
+/// `what` must not be written.
+pub fn keep_unreadable(path: &Path, error: &dyn std::error::Error, what: &str) -> (String, bool) {
+    match keep_aside(path) {
+        Ok(aside) => (format!("{error}. The old file is kept as {}.", aside.display()), true),
+        Err(_) => (format!("{error}. {what} are not saved in this run."), false),
+    }
 }
 
 #[cfg(test)]

@@ -20,6 +20,12 @@ pub enum Replaying {
 }
 
 impl Replaying {
+    /// True while nothing is recorded or played.
+    #[must_use]
+    pub fn is_off(&self) -> bool {
+        matches!(self, Self::Off)
+    }
+
     /// Pad and camera of the next tick in place of those of the player; `None` when a replay has come to its end.
     pub fn steer(&mut self, pad: &GamepadState, camera: Heading) -> Option<(GamepadState, Heading)> {
         match self {

@@ -8,9 +8,7 @@ use std::sync::Arc;
 use anyhow::{Context, Result};
 use clap::Args;
 use clips::ClipFolder;
-use evaluation::{
-    Effort, Evaluation, PlayerReport, Progress, Section, clip_states, evaluate_each, plots, table,
-};
+use evaluation::{Effort, Evaluation, PlayerReport, Progress, Section, clip_states, evaluate, plots, table};
 use files::write_atomically;
 use physics::Engine;
 use physics_bridge::Model;
@@ -140,7 +138,7 @@ pub(crate) fn run(
         }
     };
     let (pack, what) = (Arc::new(pack), (&effort, sections));
-    let evaluation = evaluate_each(&model, &pack, config, what, &states, &progress, write)?;
+    let evaluation = evaluate(&model, &pack, config, what, &states, &progress, write)?;
     progress.finish();
     match written {
         Ok(()) if arguments.json.is_some() => {}

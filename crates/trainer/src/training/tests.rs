@@ -4,7 +4,7 @@ use clips::ClipFolder;
 use policy_core::{BodyId, NodeId, PathId};
 
 use super::*;
-use crate::run::Existing;
+use crate::run::{Existing, Run};
 use crate::workspace::{Start, Workspace};
 
 /// What the recipes of these tests share.
@@ -165,15 +165,20 @@ fn a_run_continues_with_its_seed_and_rates_and_another_begins_with_its_own() {
     assert_ne!(other.training.learner.rng, rng, "the random numbers of its own seed");
 }
 
+/// A run of one iteration that was saved.
+fn saved_run(workspace: &Workspace, recipe: &Recipe) -> Run {
+    let mut run = workspace.prepare(recipe.clone(), None, Existing::Refuse).unwrap();
+    run.advance().unwrap();
+    run.save().unwrap();
+    run
+}
+
 #[test]
 fn a_run_is_deleted_once_the_new_one_is_ready() {
     let folder = tempfile::tempdir().unwrap();
     let workspace = workspace(folder.path());
     let walk = recipe("walk", "", "[[phases]]\nsamples = 160");
-    let mut run = workspace.prepare(walk.clone(), None, Existing::Refuse).unwrap();
-    run.advance().unwrap();
-    run.save().unwrap();
-    drop(run);
+    drop(saved_run(&workspace, &walk));
     let mut larger = walk.clone();
     larger.phases[0].ppo.critic_hidden = vec![12];
     let path = workspace.checkpoint("walk");
@@ -189,10 +194,7 @@ fn a_run_that_begins_by_itself_does_not_continue_a_kept_checkpoint() {
     let folder = tempfile::tempdir().unwrap();
     let workspace = workspace(folder.path());
     let walk = recipe("walk", "", "[[phases]]\nsamples = 160");
-    let mut run = workspace.prepare(walk.clone(), None, Existing::Refuse).unwrap();
-    run.advance().unwrap();
-    run.save().unwrap();
-    drop(run);
+    drop(saved_run(&workspace, &walk));
     std::fs::create_dir(&workspace.kept).unwrap();
     std::fs::rename(workspace.checkpoint("walk"), workspace.kept.join("walk.safetensors")).unwrap();
     let samples = || workspace.prepare(walk.clone(), None, Existing::Resume).unwrap().training.samples;
@@ -207,9 +209,7 @@ fn metrics_do_not_go_back_in_time_after_a_kill() {
     let folder = tempfile::tempdir().unwrap();
     let workspace = workspace(folder.path());
     let walk = recipe("walk", "", "[[phases]]\nsamples = 160");
-    let mut run = workspace.prepare(walk.clone(), None, Existing::Refuse).unwrap();
-    run.advance().unwrap();
-    run.save().unwrap();
+    let mut run = saved_run(&workspace, &walk);
     run.advance().unwrap();
     drop(run);
     let mut run = workspace.prepare(walk, None, Existing::Resume).unwrap();

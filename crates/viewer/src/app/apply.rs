@@ -10,7 +10,6 @@ use super::{App, Clock, FirstSteps, Layers, PanelLayout, ViewerCommand};
 use crate::appearance;
 use crate::dropped::{Dropped, DroppedError};
 use crate::render::Appearance;
-use crate::replays::Replaying;
 use crate::sim::{Engine, GroundKind, SceneKind, SimConfig, SimError};
 
 /// How far a failure is rewound, seconds.
@@ -74,7 +73,7 @@ impl App {
             self.toasts.error("A clip is shown: there is nothing to steer and no physics.");
             return;
         }
-        if !matches!(self.replaying, Replaying::Off) && spoils_a_replay(&command) {
+        if !self.replaying.is_off() && spoils_a_replay(&command) {
             self.toasts.error(match command {
                 ViewerCommand::Compare(_) => "You can't compare while a replay is recorded or played.",
                 _ => "Not possible while a replay is recorded or played.",
@@ -301,7 +300,7 @@ impl App {
         let rig = appearance::rig(self.sim.model());
         match Dropped::load(path, &rig)? {
             Dropped::Mesh(mesh) => Ok(("mesh", Appearance::new(rig.skeleton(), Some(*mesh)))),
-            Dropped::Pack(_) if !matches!(self.replaying, Replaying::Off) => Err(DroppedError::Replaying),
+            Dropped::Pack(_) if !self.replaying.is_off() => Err(DroppedError::Replaying),
             Dropped::Pack(pack) => {
                 self.set_pack(Arc::clone(&pack))
                     .map_err(|source| DroppedError::Body { path: path.to_owned(), source })?;

@@ -72,16 +72,11 @@ impl App {
             match BestTime::load(path) {
                 Ok(time) => self.best.time = time,
                 // A better time replaces the file: what it holds is copied aside, or nothing is written.
-                Err(error) => match files::keep_aside(path) {
-                    Ok(aside) => {
-                        let aside = aside.display();
-                        self.toasts.error(format!("{error}. The old file is kept as {aside}."));
-                    }
-                    Err(_) => {
-                        self.best.settings = None;
-                        self.toasts.error(format!("{error}. Best times are not saved in this run."));
-                    }
-                },
+                Err(error) => {
+                    let (said, kept) = files::keep_unreadable(path, &error, "Best times");
+                    self.toasts.error(said);
+                    self.best.settings = self.best.settings.take().filter(|_| kept);
+                }
             }
         }
         let file = file.filter(|_| self.best.settings.is_some());

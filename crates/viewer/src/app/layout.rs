@@ -124,10 +124,7 @@ impl PanelLayout {
             Ok(layout) => return (layout, None, true),
             Err(error) => error,
         };
-        let (said, kept) = match files::keep_aside(path) {
-            Ok(aside) => (format!("{error}. The old file is kept as {}.", aside.display()), true),
-            Err(_) => (format!("{error}. Settings are not saved in this run."), false),
-        };
+        let (said, kept) = files::keep_unreadable(path, &error, "Settings");
         (Self::default(), Some(said), kept)
     }
 

@@ -6,7 +6,6 @@ use policy_core::GamepadState;
 
 use super::first_steps::path;
 use super::{App, Doing, Keys};
-use crate::replays::Replaying;
 use crate::sim::SECOND_CHARACTER;
 
 /// Height of the eyes above the root of a character without a head, metres.
@@ -78,7 +77,7 @@ impl App {
             || self.pad.second.is_some_and(|pad| !at_rest(&pad))
             || self.keys != Keys::default();
         let busy = self.help || self.leaving || self.choosing || self.recording.is_some();
-        let is_free = matches!(self.replaying, Replaying::Off);
+        let is_free = self.replaying.is_off();
         let runs = !self.clock.paused && self.failure.is_none() && self.sim.playback().is_none();
         if !at_rest(&self.pad.state) || self.keys != Keys::default() {
             self.uses_pad = !at_rest(&self.pad.state);
@@ -120,7 +119,7 @@ impl App {
 
     /// Hands the second player's pad on, and says when a second player joins or leaves. Replays and the tour know one player.
     pub(super) fn follow_second(&mut self) {
-        let alone = !matches!(self.replaying, Replaying::Off) || self.tour.is_playing();
+        let alone = !self.replaying.is_off() || self.tour.is_playing();
         let taps = self.second_taps;
         let latched = |pad: GamepadState| GamepadState { buttons: taps.state(pad.buttons), ..pad };
         let wanted = self.pad.second.filter(|_| !alone).map(latched);
