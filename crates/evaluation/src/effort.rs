@@ -8,7 +8,7 @@ use super::player::STRAIGHT_COORDINATES;
 use super::press::bound_buttons;
 use super::response::{STOP_SECS, WAYS};
 use super::stress::{CASE_COUNT, GET_UP_SECS, GROUND_COUNT, PadKind, nominal_trials};
-use super::trial::Gait;
+use super::trial::Gaits;
 
 /// How much is measured.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -51,6 +51,8 @@ pub struct Effort {
     pub encounters: usize,
     /// Runs over the playground's course.
     pub races: usize,
+    /// The gaits in which a measure by gait is taken.
+    pub gaits: Gaits,
 }
 
 impl Effort {
@@ -75,6 +77,7 @@ impl Effort {
         push_step_newton: 10.0,
         encounters: 48,
         races: 10,
+        gaits: Gaits::ALL,
     };
 
     /// Less than three minutes on two idle cores, for a first look.
@@ -98,6 +101,7 @@ impl Effort {
         push_step_newton: 50.0,
         encounters: 4,
         races: 1,
+        gaits: Gaits::ALL,
     };
 
     /// The same with so many characters in every measure, and as many tries of each encounter; drops, seconds and runs over the course
@@ -125,7 +129,7 @@ impl Effort {
     pub fn nominal_secs(&self, section: Section, pack: &CharacterPack) -> f32 {
         let graph = pack.graph();
         let (nodes, paths, edges) = (graph.nodes().len(), graph.paths().len(), graph.edges().len());
-        let gaits = Gait::all(pack).len();
+        let gaits = self.gaits.of(pack).len();
         let of = |trials: usize, secs: f32| trials as f32 * secs;
         let roamed = of(gaits * self.roamers, self.roam_secs);
         match section {

@@ -125,7 +125,7 @@ impl PlayerReport {
         match section {
             Section::Turns => {
                 let turns = |gait: Gait| (gait.name.into(), measure_turns(rig, &rig.settled(&gait)));
-                self.response.turns = Gait::all(rig.pack).into_iter().map(turns).collect();
+                self.response.turns = rig.gaits_and_starts().into_iter().map(turns).collect();
             }
             Section::Starts => self.response.start = Some(measure_starts(rig)),
             Section::Stops => {

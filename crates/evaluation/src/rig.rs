@@ -44,10 +44,16 @@ impl<'a> Rig<'a> {
         ControllerConfig { auto_recover: false, ..self.config }
     }
 
-    /// The gaits of the pack that go on for as long as the pad is held.
+    /// The gaits of the pack that are measured, among them those that only set off from another.
+    #[must_use]
+    pub fn gaits_and_starts(&self) -> Vec<Gait> {
+        self.effort.gaits.of(self.pack)
+    }
+
+    /// The gaits of the pack that are measured and go on for as long as the pad is held.
     #[must_use]
     pub fn gaits(&self) -> Vec<Gait> {
-        Gait::all(self.pack).into_iter().filter(|gait| !gait.is_start).collect()
+        self.gaits_and_starts().into_iter().filter(|gait| !gait.is_start).collect()
     }
 
     /// Characters that have settled in a gait: [`Effort::settled`] of them, less those that fall on the way. They settle once.

@@ -13,6 +13,7 @@ use policy_core::training::{Layer, Normaliser, PackTensors};
 use policy_core::{CharacterPack, ControllerConfig, Mlp, Skeleton};
 use random::Rng;
 
+use super::trial::Gaits;
 use super::{Effort, EvalCharacter, Evaluation, PlayerReport, Progress, Section, evaluate, table};
 
 const HUMANOID: &str = include_str!("../../../assets/humanoid.xml");
@@ -149,6 +150,20 @@ fn measured(engine: Engine, falls: bool, effort: &Effort, sections: &[Section]) 
     assert_eq!(so_far.len(), sections.len(), "each section is told of");
     assert_eq!(so_far.last(), Some(&evaluation));
     evaluation
+}
+
+#[test]
+fn some_gaits_are_measured_as_with_all_of_them_and_others_are_not() {
+    let gaits = ["walk", "crawl", "strafe"].iter().filter_map(|name| Gaits::from_name(name));
+    let effort = Effort { gaits: gaits.fold(Gaits::NONE, Gaits::and), ..TINY };
+    let sections = [Section::Turns, Section::Stops, Section::Legs];
+    let some = measured(Engine::Mujoco, false, &effort, &sections).player;
+    let all = measured(Engine::Mujoco, false, &TINY, &sections).player;
+    assert!(some.response.turns.keys().eq(["crawl", "walk"]), "{:?}", some.response.turns.keys());
+    assert!(some.response.stop.keys().eq(["crawl", "walk"]), "{:?}", some.response.stop.keys());
+    assert!(some.foot_slide_mps.keys().eq(["crawl", "walk"]), "{:?}", some.foot_slide_mps.keys());
+    assert_eq!(some.response.turns["walk"], all.response.turns["walk"]);
+    assert_eq!(some.response.stop["crawl"], all.response.stop["crawl"]);
 }
 
 #[test]

@@ -37,6 +37,47 @@ const GAITS: [Entry; 10] = [
     ("strafe", "strafe", 1.0, 1.0),
 ];
 
+/// Some of the gaits that can be measured, whether a pack has them or not.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Gaits(u16);
+
+impl Gaits {
+    /// None of them.
+    pub const NONE: Gaits = Gaits(0);
+    /// All of them.
+    pub const ALL: Gaits = Gaits((1 << GAITS.len()) - 1);
+
+    /// The names of all gaits.
+    #[must_use]
+    pub fn names() -> [&'static str; GAITS.len()] {
+        GAITS.map(|(name, ..)| name)
+    }
+
+    /// The gait called `name` alone; `None` when there is none of that name.
+    #[must_use]
+    pub fn from_name(name: &str) -> Option<Gaits> {
+        Gaits::names().iter().position(|known| *known == name).map(|index| Gaits(1 << index))
+    }
+
+    /// The gaits of either.
+    #[must_use]
+    pub const fn and(self, other: Gaits) -> Gaits {
+        Gaits(self.0 | other.0)
+    }
+
+    /// True when the gait called `name` is among them.
+    #[must_use]
+    pub fn contains(self, name: &str) -> bool {
+        Gaits::from_name(name).is_some_and(|one| self.0 & one.0 != 0)
+    }
+
+    /// Those of them that a pack has.
+    #[must_use]
+    pub fn of(self, pack: &CharacterPack) -> Vec<Gait> {
+        Gait::all(pack).into_iter().filter(|gait| self.contains(gait.name)).collect()
+    }
+}
+
 impl Gait {
     /// The gaits that a pack has, all reached from the second node of the stick's path. Empty for a pack without one.
     #[must_use]
@@ -102,6 +143,18 @@ mod tests {
     use policy_core::Button;
 
     use super::*;
+
+    #[test]
+    fn some_gaits_are_those_of_their_names_that_the_pack_has() {
+        let path = concat!(env!("CARGO_MANIFEST_DIR"), "/../../assets/humanoid.pack.safetensors");
+        let pack = CharacterPack::from_bytes(&std::fs::read(path).unwrap()).unwrap();
+        let some = ["strafe", "walk"].iter().filter_map(|name| Gaits::from_name(name));
+        let names: Vec<_> =
+            some.fold(Gaits::NONE, Gaits::and).of(&pack).iter().map(|gait| gait.name).collect();
+        assert_eq!(names, ["walk", "strafe"]);
+        assert_eq!(Gaits::ALL.of(&pack), Gait::all(&pack));
+        assert_eq!(Gaits::from_name("waddle"), None);
+    }
 
     #[test]
     fn the_pad_of_a_gait_holds_what_leads_to_its_node() {

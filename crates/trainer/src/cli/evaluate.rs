@@ -8,6 +8,7 @@ use std::sync::Arc;
 use anyhow::{Context, Result};
 use clap::Args;
 use clips::ClipFolder;
+use evaluation::trial::Gaits;
 use evaluation::{Effort, Evaluation, PlayerReport, Progress, Section, clip_states, evaluate, plots, table};
 use files::write_atomically;
 use physics::Engine;
@@ -24,7 +25,7 @@ pub(crate) struct Arguments {
     #[arg(required_unless_present = "from")]
     pack: Option<PathBuf>,
     /// Print and draw what an earlier run has written to this file, and measure nothing.
-    #[arg(long, conflicts_with_all = ["pack", "json", "quick", "only", "physics", "characters"])]
+    #[arg(long, conflicts_with_all = ["pack", "json", "quick", "only", "gaits", "physics", "characters"])]
     from: Option<PathBuf>,
     /// File to write the measures to.
     #[arg(long)]
@@ -38,6 +39,10 @@ pub(crate) struct Arguments {
     /// Evaluate only these sections, comma-separated; an unknown name lists them.
     #[arg(long, value_delimiter = ',', value_parser = section)]
     only: Vec<Section>,
+    /// Measure what is measured by gait in these gaits alone, comma-separated; an unknown name lists them. Figures are the same as with
+    /// all of them.
+    #[arg(long, value_delimiter = ',', value_parser = gait)]
+    gaits: Vec<Gaits>,
     /// Physics engine: mujoco or rapier. Rapier skips the sections encounters and race.
     #[arg(long, default_value = "mujoco", value_parser = engine)]
     physics: Engine,
@@ -82,6 +87,11 @@ fn section(name: &str) -> Result<Section, String> {
     Section::from_name(name).ok_or_else(|| format!("expected one of {}", names()))
 }
 
+/// The gait of a name.
+fn gait(name: &str) -> Result<Gaits, String> {
+    Gaits::from_name(name).ok_or_else(|| format!("expected one of {}", Gaits::names().join(", ")))
+}
+
 /// The engine of a name.
 fn engine(name: &str) -> Result<Engine, String> {
     let names = || Engine::ALL.map(Engine::name).join(" or ");
@@ -107,6 +117,8 @@ pub(crate) fn run(
     let pack = super::load::pack(path)?;
     let effort = if arguments.quick { Effort::QUICK } else { Effort::FULL };
     let effort = arguments.characters.map_or(effort, |count| effort.with_characters(count.into()));
+    let some = arguments.gaits.iter().copied().reduce(Gaits::and);
+    let effort = Effort { gaits: some.unwrap_or(effort.gaits), ..effort };
     let sections: &[Section] = if arguments.only.is_empty() { &Section::ALL } else { &arguments.only };
     let states = match clips.filter(|_| sections.contains(&Section::Motion)) {
         Some(clips) => states_of_clips(model, recipes, clips, &pack)?,
