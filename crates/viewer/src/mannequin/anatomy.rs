@@ -70,7 +70,7 @@ fn piece(body: Bone, fillet: f32, cell: f32, shapes: &[Shape]) -> Piece {
 pub(super) fn shells() -> Vec<Piece> {
     let mut pieces = trunk();
     for right in right_limbs() {
-        let left = left_of(right.body);
+        let left = right.body.mirrored();
         let shapes = right.shapes.iter().map(|s| s.mirrored()).collect();
         let mirrored = Piece { body: left, shapes, ..right };
         pieces.extend([right, mirrored]);
@@ -81,7 +81,7 @@ pub(super) fn shells() -> Vec<Piece> {
 fn trunk() -> Vec<Piece> {
     let mut chest = vec![
         egg(vec3(0.0, 0.0, 0.15), vec3(0.107, 0.142, 0.125)),
-        egg(vec3(0.0, 0.0, 0.05), vec3(0.09, 0.112, 0.082)),
+        egg(vec3(0.0, 0.0, 0.055), vec3(0.097, 0.128, 0.084)),
     ];
     for side in [-1.0, 1.0] {
         chest.push(egg(vec3(0.052, 0.062 * side, 0.165), vec3(0.058, 0.072, 0.056)));
@@ -107,7 +107,7 @@ fn trunk() -> Vec<Piece> {
             0.05,
             0.012,
             &[
-                egg(vec3(0.0, 0.0, 0.062), vec3(0.101, 0.137, 0.068)),
+                egg(vec3(0.0, 0.0, 0.062), vec3(0.103, 0.140, 0.072)),
                 egg(vec3(0.0, 0.0, 0.0), vec3(0.078, 0.062, 0.075)),
                 egg(vec3(-0.05, -0.055, 0.03), vec3(0.066, 0.07, 0.07)),
                 egg(vec3(-0.05, 0.055, 0.03), vec3(0.066, 0.07, 0.07)),
@@ -208,7 +208,7 @@ pub(super) fn suit() -> Vec<(Bone, Shape)> {
     ];
     for (body, shape) in right_suit() {
         shapes.push((body, shape));
-        shapes.push((left_of(body), shape.mirrored()));
+        shapes.push((body.mirrored(), shape.mirrored()));
     }
     shapes
 }
@@ -222,10 +222,6 @@ fn right_suit() -> Vec<(Bone, Shape)> {
         (Bone::RightShin, cone(vec3(0.0, 0.0, 0.0), vec3(0.0, 0.0, -0.38), 0.042, 0.027)),
         (Bone::RightFoot, cone(vec3(-0.002, 0.0, 0.005), vec3(0.0, 0.0, -0.02), 0.030, 0.030)),
     ]
-}
-
-fn left_of(body: Bone) -> Bone {
-    Bone::from_name(&body.name().replacen("right", "left", 1)).unwrap_or(body)
 }
 
 #[cfg(test)]

@@ -59,6 +59,16 @@ impl Bone {
         BONE_NAMES.iter().position(|&n| n == name).map(|i| Self::ALL[i])
     }
 
+    /// The same body of the other side; itself in the middle.
+    pub(super) fn mirrored(self) -> Bone {
+        let name = self.name();
+        let other = match name.strip_prefix("right_") {
+            Some(part) => format!("left_{part}"),
+            None => name.replacen("left_", "right_", 1),
+        };
+        Self::from_name(&other).unwrap_or(self)
+    }
+
     /// The body this one hangs on; `None` for the pelvis.
     pub(super) const fn parent(self) -> Option<Bone> {
         match self {

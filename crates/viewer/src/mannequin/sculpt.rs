@@ -5,7 +5,9 @@ use glam::{Vec3, Vec4};
 use super::anatomy::{self, Piece};
 use super::bone::Bone;
 use super::field::{Shape, normal, smooth_union};
-use super::surface_nets;
+use super::rim::Rimmed;
+use super::surface_nets::Surface;
+use super::{markings, rim, surface_nets};
 
 /// Width of the band around a joint in which the suit bends, metres.
 const BEND: f32 = 0.07;
@@ -45,36 +47,47 @@ impl Sculpture {
         Self { rest: anatomy::rest_positions(), shells: anatomy::shells(), suit: anatomy::suit() }
     }
 
-    /// Shells with cells `coarseness` times the size in `anatomy`.
-    pub(super) fn shells(&self, coarseness: f32) -> Part {
-        let mut part = Part::default();
-        self.pieces(false, coarseness, &mut part);
-        part
-    }
-
-    fn pieces(&self, dark: bool, coarseness: f32, part: &mut Part) {
-        for piece in self.shells.iter().filter(|p| p.dark == dark) {
-            let origin = self.rest[piece.body.index()];
-            let (low, high) = bounds(piece.shapes.iter());
-            let field = |p: Vec3| piece_distance(piece, p);
-            let surface = surface_nets::mesh(low, high, piece.cell * coarseness, field);
-            let base = part.vertices.len() as u32;
-            part.indices.extend(surface.indices.iter().map(|i| base + i));
-            part.vertices.extend(surface.positions.iter().map(|&p| {
-                let follow = ([piece.body as u8, 0, 0, 0], [255, 0, 0, 0]);
-                self.vertex(origin + p, normal(p, field), follow)
-            }));
-        }
-    }
-
-    /// The suit, without what the shells hide, and the dark pieces.
-    pub(super) fn suit(&self, coarseness: f32) -> Part {
-        let mut part = Part::default();
+    /// Shells with rims, and the suit without what they hide, with dark pieces and markings. Cells are `coarseness` times the size in
+    /// `anatomy`.
+    pub(super) fn figure(&self, coarseness: f32) -> (Part, Part) {
+        let (mut shells, mut suit) = (Part::default(), Part::default());
         for group in Group::ALL {
-            self.suit_group(group, coarseness, &mut part);
+            self.suit_group(group, coarseness, &mut suit);
         }
-        self.pieces(true, coarseness, &mut part);
+        for piece in &self.shells {
+            let (origin, group) = (self.rest[piece.body.index()], Group::of(piece.body));
+            let field = |p: Vec3| piece_distance(piece, p);
+            let (surface, cell) = mesh_of(piece, coarseness);
+            if piece.dark {
+                self.add(piece.body, &rim::plain(&surface, field), &mut suit);
+                continue;
+            }
+            let whole = rim::rimmed(&surface, cell, field, |p| self.suit_distance(group, origin + p));
+            let (plain, marked) = markings::parted(whole, &markings::of(piece.body), field);
+            self.add(piece.body, &plain, &mut shells);
+            self.add(piece.body, &marked, &mut suit);
+        }
+        (shells, suit)
+    }
+
+    /// Shells without rims and markings, which run into the suit.
+    pub(super) fn plain_shells(&self, coarseness: f32) -> Part {
+        let mut part = Part::default();
+        for piece in self.shells.iter().filter(|piece| !piece.dark) {
+            let surface = rim::plain(&mesh_of(piece, coarseness).0, |p| piece_distance(piece, p));
+            self.add(piece.body, &surface, &mut part);
+        }
         part
+    }
+
+    /// Adds a surface in the frame of the body that carries it.
+    fn add(&self, body: Bone, surface: &Rimmed, part: &mut Part) {
+        let base = part.vertices.len() as u32;
+        part.indices.extend(surface.indices.iter().map(|index| base + index));
+        part.vertices.extend(surface.points.iter().map(|point| {
+            let follow = ([body as u8, 0, 0, 0], [255, 0, 0, 0]);
+            self.vertex(self.rest[body.index()] + point.position, point.normal, follow)
+        }));
     }
 
     /// Arms are meshed by themselves: at rest they touch the hips, and would grow onto them.
@@ -108,29 +121,37 @@ impl Sculpture {
     }
 
     fn vertex(&self, position: Vec3, normal: Vec3, (bodies, follow): ([u8; 4], [u8; 4])) -> Vertex {
-        Vertex { position, normal, openness: self.openness(position, normal), bodies, follow }
+        let openness = self.openness(position, normal, Bone::ALL[usize::from(bodies[0])]);
+        Vertex { position, normal, openness, bodies, follow }
     }
 
-    /// Occlusion by what lies within 7 cm along the normal, from five samples of the field.
-    fn openness(&self, p: Vec3, n: Vec3) -> f32 {
+    /// Occlusion by what lies within 7 cm along the normal, from five samples of the field. Only bodies that stay near this one count: a
+    /// hand that hangs beside the thigh at rest would leave its shade there.
+    fn openness(&self, p: Vec3, n: Vec3, body: Bone) -> f32 {
         let mut closed = 0.0;
         let mut share = 1.0;
         for step in 1..=5 {
             let height = 0.014 * step as f32;
             let q = p + n * height;
-            let suit = Group::ALL.map(|g| self.suit_distance(g, q)).into_iter().fold(f32::INFINITY, f32::min);
-            let free = self.shell_distance(q).min(suit).max(-0.01);
+            let free = self.distance_near(body, q).max(-0.01);
             closed += share * (height - free).max(0.0) / height;
             share *= 0.75;
         }
         (1.0 - 0.36 * closed).clamp(0.12, 1.0)
     }
 
-    fn shell_distance(&self, p: Vec3) -> f32 {
-        self.shells
-            .iter()
-            .map(|piece| piece_distance(piece, p - self.rest[piece.body.index()]))
-            .fold(f32::INFINITY, f32::min)
+    /// Distance to the shells and the suit of a body and of those next to it: its parent, its children and its parent's.
+    fn distance_near(&self, body: Bone, p: Vec3) -> f32 {
+        let is_near = |other: Bone| {
+            other == body
+                || other.parent() == Some(body)
+                || body.parent().is_some_and(|parent| other == parent || other.parent() == Some(parent))
+        };
+        let shells = self.shells.iter().filter(|piece| is_near(piece.body));
+        let shells = shells.map(|piece| piece_distance(piece, p - self.rest[piece.body.index()]));
+        let suit = self.suit.iter().filter(|(of, _)| is_near(*of));
+        let suit = suit.map(|(of, shape)| shape.distance(p - self.rest[of.index()]));
+        shells.chain(suit).fold(f32::INFINITY, f32::min)
     }
 
     fn body_distances(&self, group: Group, p: Vec3) -> [f32; 15] {
@@ -218,6 +239,13 @@ fn quantised(shares: &[(usize, f32)]) -> ([u8; 4], [u8; 4]) {
         bodies[i] = if bytes[i] == 0 { 0 } else { share.0 as u8 };
     }
     (bodies, bytes)
+}
+
+/// The mesh of a piece, and the edge of its cells.
+fn mesh_of(piece: &Piece, coarseness: f32) -> (Surface, f32) {
+    let (low, high) = bounds(piece.shapes.iter());
+    let cell = piece.cell * coarseness;
+    (surface_nets::mesh(low, high, cell, |p| piece_distance(piece, p)), cell)
 }
 
 fn piece_distance(piece: &Piece, p: Vec3) -> f32 {

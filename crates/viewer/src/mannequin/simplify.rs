@@ -70,7 +70,7 @@ mod tests {
 
     #[test]
     fn it_is_coarser_and_keeps_the_outline_of_every_body() {
-        let fine = Sculpture::new().shells(2.8);
+        let fine = Sculpture::new().plain_shells(2.8);
         let coarse = simplified(&fine, 0.05);
         assert!(coarse.indices.len() < fine.indices.len() / 2, "{} indices", coarse.indices.len());
         let extent = |part: &Part, body: u8| {
@@ -91,7 +91,7 @@ mod tests {
 
     #[test]
     fn no_triangle_is_flat_or_there_twice() {
-        let coarse = simplified(&Sculpture::new().suit(2.8), 0.05);
+        let coarse = simplified(&Sculpture::new().figure(2.8).1, 0.05);
         let mut seen = BTreeSet::new();
         for corners in coarse.indices.chunks_exact(3) {
             let mut sorted = [corners[0], corners[1], corners[2]];
