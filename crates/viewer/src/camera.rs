@@ -21,6 +21,8 @@ pub struct Camera {
     pub pitch: f32,
     /// From the character, metres.
     pub distance: f32,
+    /// Angle about the character from where the stick steers to where the picture is taken, radians. For pictures without a window.
+    pub around: f32,
     /// What it looks at, smoothed.
     target: Vec3,
     /// Where it stands, while fixed or free.
@@ -45,6 +47,7 @@ impl Default for Camera {
             yaw: 0.0,
             pitch: 0.22,
             distance: 3.6,
+            around: 0.0,
             target: Vec3::new(0.0, 0.0, 0.85),
             eye: Vec3::ZERO,
             head: Vec3::new(0.0, 0.0, 1.5),
@@ -52,7 +55,7 @@ impl Default for Camera {
             room: Room::default(),
             further: 0.0,
         };
-        camera.eye = camera.orbit_eye(0.0);
+        camera.eye = camera.orbit_eye();
         camera
     }
 }
@@ -94,7 +97,7 @@ impl Camera {
 
     /// Moves in another way from now on. A free camera begins where the present one is.
     pub fn set_mode(&mut self, mode: CameraMode) {
-        let view = self.view(0.0);
+        let view = self.view();
         if !self.mode.circles() {
             let along = (view.target - view.eye).normalize_or(Vec3::X);
             (self.yaw, self.pitch) = (along.y.atan2(along.x), -along.z.asin());
@@ -112,7 +115,7 @@ impl Camera {
             self.mode = start.mode;
         }
         (self.yaw, self.pitch, self.distance) = (heading.angle(), start.pitch, start.distance);
-        self.eye = self.orbit_eye(0.0);
+        self.eye = self.orbit_eye();
     }
 
     /// Turns and tilts, radians; for a mouse.
@@ -167,7 +170,7 @@ impl Camera {
             self.yaw += off * (1.0 - (-dt / 0.9).exp());
         }
         if self.mode.circles() {
-            self.eye = self.orbit_eye(0.0);
+            self.eye = self.orbit_eye();
         }
     }
 
@@ -176,14 +179,14 @@ impl Camera {
     #[must_use]
     pub fn line(&self) -> Option<(Vec3, Vec3)> {
         let free = Self { room: Room::default(), ..*self };
-        self.mode.circles().then(|| (self.target, free.orbit_eye(0.0) - self.target))
+        self.mode.circles().then(|| (self.target, free.orbit_eye() - self.target))
     }
 
     /// Takes `dt` seconds in which something hides the character from `hit` metres along [`Camera::line`] on.
     pub fn keep_clear(&mut self, dt: f32, hit: Option<f32>) {
         self.room.advance(dt, hit, self.distance + self.further);
         if self.mode.circles() {
-            self.eye = self.orbit_eye(0.0);
+            self.eye = self.orbit_eye();
         }
     }
 
@@ -217,14 +220,14 @@ impl Camera {
     #[cfg(feature = "native")]
     #[must_use]
     pub fn listener(&self) -> crate::sound::Listener {
-        let view = self.view(0.0);
+        let view = self.view();
         let right = (view.target - view.eye).cross(Vec3::Z).normalize_or(Vec3::NEG_Y);
         crate::sound::Listener { at: view.eye, right }
     }
 
-    /// The picture's view, turned by `around` radians about the character.
+    /// The picture's view.
     #[must_use]
-    pub fn view(&self, around: f32) -> View {
+    pub fn view(&self) -> View {
         match self.mode {
             CameraMode::Fixed => View { eye: self.eye, target: self.target, fov: FOV },
             CameraMode::Free => View { eye: self.eye, target: self.eye + self.along(), fov: FOV },
@@ -232,7 +235,7 @@ impl Camera {
                 let eye = self.head + self.along() * FACE_M * self.size;
                 View { eye, target: eye + self.along(), fov: FIRST_PERSON_FOV }
             }
-            _ => View { eye: self.orbit_eye(around), target: self.target, fov: FOV },
+            _ => View { eye: self.orbit_eye(), target: self.target, fov: FOV },
         }
     }
 
@@ -242,8 +245,8 @@ impl Camera {
         Vec3::new(cos * self.pitch.cos(), sin * self.pitch.cos(), -self.pitch.sin())
     }
 
-    fn orbit_eye(&self, around: f32) -> Vec3 {
-        let (sin, cos) = (self.yaw + around).sin_cos();
+    fn orbit_eye(&self) -> Vec3 {
+        let (sin, cos) = (self.yaw + self.around).sin_cos();
         let back = Vec3::new(-cos * self.pitch.cos(), -sin * self.pitch.cos(), self.pitch.sin());
         let mut eye = self.target + back * self.room.limit(self.distance + self.further);
         eye.z = eye.z.max(LEAST_HEIGHT_M);
@@ -259,16 +262,30 @@ mod tests {
     fn it_settles_behind_its_character_and_looks_along_its_heading() {
         let mut camera = Camera { yaw: 1.0, ..Camera::default() };
         camera.settle(Vec3::new(3.0, 4.0, 0.88), 0.0);
-        let view = camera.view(0.0);
+        let view = camera.view();
         assert!((view.target.truncate() - Vec2::new(3.0, 4.0)).length() < 1e-4);
         let along = Heading::from_direction((view.target - view.eye).truncate());
         assert!((along.angle() - 1.0).abs() < 1e-5 && (camera.heading().angle() - 1.0).abs() < 1e-5);
     }
 
     #[test]
+    fn a_picture_taken_from_the_side_keeps_clear_of_what_stands_there() {
+        let mut camera = Camera { around: 1.2, ..Camera::default() };
+        camera.settle(Vec3::new(0.0, 0.0, 0.88), 0.0);
+        assert!(camera.heading().angle().abs() < 1e-6, "the stick steers along the camera's yaw");
+        let (from, line) = camera.line().unwrap();
+        assert!(
+            (from + line).distance(camera.view().eye) < 1e-5,
+            "what is looked for is on the line to the picture's eye"
+        );
+        camera.keep_clear(10.0, Some(1.5));
+        assert!((camera.view().eye.distance(from) - 1.25).abs() < 0.01);
+    }
+
+    #[test]
     fn it_steps_back_until_two_players_are_in_the_picture() {
         let mut camera = Camera::default();
-        let far = |camera: &Camera| camera.view(0.0).eye.distance(camera.view(0.0).target);
+        let far = |camera: &Camera| camera.view().eye.distance(camera.view().target);
         let alone = far(&camera);
         camera.make_room_for(100.0, 8.0);
         assert!(far(&camera) > 8.0 && far(&camera) < 16.0, "{}", far(&camera));
@@ -293,10 +310,10 @@ mod tests {
         let mut camera = Camera::default();
         camera.set_mode(CameraMode::FirstPerson);
         camera.follow_head(10.0, Vec3::new(2.0, 0.0, 1.5));
-        let before = camera.view(0.0);
+        let before = camera.view();
         assert!(before.eye.distance(Vec3::new(2.0, 0.0, 1.5)) < 0.2);
         camera.turn(Vec2::new(-1.0, -1.0));
-        let after = camera.view(0.0);
+        let after = camera.view();
         assert!((after.target - after.eye).z > 0.5, "it can look up");
         assert!((camera.heading().angle() - 1.0).abs() < 1e-5);
         camera.set_mode(CameraMode::Follow);
@@ -310,16 +327,16 @@ mod tests {
             camera.follow_head(10.0, Vec3::new(0.0, 0.0, 1.5));
             camera.set_mode(mode);
             camera.advance(0.1, [0.0; 2], Vec3::new(0.3, 0.0, 0.88), Heading::from_angle(2.0), 0.0);
-            let before = camera.view(0.0);
+            let before = camera.view();
             camera.set_mode(CameraMode::Free);
-            let after = camera.view(0.0);
+            let after = camera.view();
             let (a, b) = ((before.target - before.eye).normalize(), (after.target - after.eye).normalize());
             assert!(before.eye.distance(after.eye) < 1e-4 && a.distance(b) < 1e-4, "{mode:?}: {a} {b}");
             // The character leaves, the camera stays; then it flies ahead.
             camera.advance(1.0, [0.0; 2], Vec3::new(50.0, 0.0, 0.88), Heading::FORWARD, 0.0);
-            assert_eq!(camera.view(0.0).eye, after.eye);
+            assert_eq!(camera.view().eye, after.eye);
             camera.fly(0.5, [1.0, 0.0, 0.0]);
-            let flown = camera.view(0.0).eye - after.eye;
+            let flown = camera.view().eye - after.eye;
             assert!((flown.length() - 2.0).abs() < 0.1, "{mode:?}: {flown}");
         }
     }
@@ -331,7 +348,7 @@ mod tests {
             camera.set_mode(mode);
             camera.reset(Heading::from_angle(-0.5));
             camera.settle(Vec3::new(3.0, 4.0, 0.88), 0.0);
-            let view = camera.view(0.0);
+            let view = camera.view();
             let along = Heading::from_direction((view.target - view.eye).truncate());
             assert!((along.angle() + 0.5).abs() < 1e-4, "{mode:?}");
             assert!((camera.distance, camera.pitch) == (3.6, 0.22) && camera.mode != CameraMode::Free);

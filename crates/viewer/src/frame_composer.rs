@@ -27,7 +27,6 @@ pub struct FrameComposer {
     overlay: Overlay,
     context: egui::Context,
     scene: Scene,
-    around: f32,
     recorder: Option<(Recorder, Instant, usize)>,
     /// Recordings that are still being written.
     closing: Vec<Recorder>,
@@ -64,7 +63,6 @@ impl FrameComposer {
             overlay: Overlay::new(gpu, format),
             context,
             scene: Scene::default(),
-            around: 0.0,
             recorder: None,
             closing: Vec::new(),
         }
@@ -76,11 +74,10 @@ impl FrameComposer {
         &self.context
     }
 
-    /// Runs the panels over `input`; `around` turns the picture away from where the pad steers, radians.
-    pub fn panels(&mut self, app: &mut App, input: egui::RawInput, around: f32) -> egui::FullOutput {
-        self.around = around;
+    /// Runs the panels over `input`.
+    pub fn panels(&mut self, app: &mut App, input: egui::RawInput) -> egui::FullOutput {
         let start = Instant::now();
-        let output = self.context.run_ui(input, |ui| app.ui(ui, around));
+        let output = self.context.run_ui(input, |ui| app.ui(ui));
         app.plots.ui.push(start.elapsed().as_secs_f32() * 1e3);
         for path in std::mem::take(&mut app.dropped) {
             self.open_dropped(app, &path);
@@ -179,7 +176,7 @@ impl FrameComposer {
             egui::Rect::from_min_size(egui::Pos2::ZERO, egui::vec2(size[0] as f32, size[1] as f32) / scale);
         let views = app.views();
         for index in 0..views {
-            app.set_scene(&mut self.scene, self.around, index);
+            app.set_scene(&mut self.scene, index);
             let part = app.part(index, screen);
             let [left, right] =
                 [part.left(), part.right()].map(|x| ((x * scale).round() as u32).min(size[0]));

@@ -262,7 +262,7 @@ impl OpenWindow {
             crate::cli::trace(app);
         }
         let input = self.egui.take_egui_input(&self.window);
-        let mut output = self.composer.panels(app, input, 0.0);
+        let mut output = self.composer.panels(app, input);
         self.egui.handle_platform_output(&self.window, std::mem::take(&mut output.platform_output));
         let size = [self.configuration.width, self.configuration.height];
         let texture = match self.surface.get_current_texture() {

@@ -22,7 +22,7 @@ fn a_quadruped_runs_under_every_panel() {
     let app = App::new(simulation_of(Arc::new(quadruped())), PanelLayout { open, ..PanelLayout::default() });
     let mut harness = Harness::builder()
         .with_size(egui::vec2(1200.0, 3000.0))
-        .build_ui_state(|ui, app: &mut App| app.ui(ui, 0.0), app);
+        .build_ui_state(|ui, app: &mut App| app.ui(ui), app);
     let bodies = harness.state().sim.player().state.bodies.len();
     assert_ne!(bodies, 15);
     for _ in 0..30 {
@@ -43,7 +43,7 @@ fn without_a_mesh_its_collision_shapes_are_drawn() {
     let mut app = app;
     app.has_mesh = false;
     let mut scene = Scene::default();
-    app.set_scene(&mut scene, 0.7, 0);
+    app.set_scene(&mut scene, 0);
     assert!(scene.markers.len() >= app.sim.model().shapes().len());
     let Some(gpu) = gpu() else { return };
     let mut renderer = Renderer::new(&gpu, OffScreen::FORMAT, RenderConfig::for_adapter(true), looks);
@@ -117,7 +117,7 @@ fn a_dropped_pack_is_drawn_as_what_it_is() {
     let mut composer = FrameComposer::new(&gpu, OffScreen::FORMAT, looks);
     for dropped in [vec![], vec![path]] {
         app.dropped = dropped;
-        let output = composer.panels(&mut app, egui::RawInput::default(), 0.7);
+        let output = composer.panels(&mut app, egui::RawInput::default());
         composer.picture(&mut app, output, [160, 120], false).unwrap();
     }
     assert!(app.toasts.take_text().is_some_and(|said| said.contains("Opened the character pack")));
@@ -135,7 +135,7 @@ fn a_dropped_mesh_is_drawn_and_the_demo_says_so() {
     let mut composer = FrameComposer::new(&gpu, OffScreen::FORMAT, bare);
     app.has_mesh = false;
     app.dropped = vec![path];
-    let output = composer.panels(&mut app, egui::RawInput::default(), 0.7);
+    let output = composer.panels(&mut app, egui::RawInput::default());
     composer.picture(&mut app, output, [160, 120], false).unwrap();
     assert!(
         app.toasts

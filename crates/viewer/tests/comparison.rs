@@ -83,7 +83,7 @@ fn every_view_shows_its_character_and_no_other() {
         screen_rect: Some(egui::Rect::from_min_size(egui::Pos2::ZERO, size)),
         ..Default::default()
     };
-    let output = composer.panels(&mut app, input(), 0.0);
+    let output = composer.panels(&mut app, input());
     let picture = composer.picture(&mut app, output, SIZE, false).unwrap();
     // White limbs, in each third and about its middle alone.
     let light = |x: u32| {

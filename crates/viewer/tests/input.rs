@@ -153,7 +153,7 @@ fn dragging_a_body_pulls_it() {
     app.layout.hidden = true;
     app.clock.paused = true;
     let screen = egui::vec2(900.0, 700.0);
-    let view = app.camera.view(0.0);
+    let view = app.camera.view();
     let torso = app.sim.player().poses(1.0).positions[1];
     let clip = view.clip_from_world(screen.x / screen.y).project_point3(torso);
     let at = egui::pos2((clip.x * 0.5 + 0.5) * screen.x, (0.5 - clip.y * 0.5) * screen.y);
@@ -183,7 +183,7 @@ fn a_press_beside_a_limb_turns_the_camera_alone_and_one_on_it_pulls_alone() {
     app.layout.hidden = true;
     app.clock.paused = true;
     let screen = egui::vec2(900.0, 700.0);
-    let view = app.camera.view(0.0);
+    let view = app.camera.view();
     let on_screen = |point: glam::Vec3| {
         let clip = view.clip_from_world(screen.x / screen.y).project_point3(point);
         egui::pos2((clip.x * 0.5 + 0.5) * screen.x, (0.5 - clip.y * 0.5) * screen.y)

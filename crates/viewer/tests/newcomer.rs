@@ -234,7 +234,7 @@ fn the_cameras_go_round_and_come_back() {
         harness.run_steps(2);
         harness.state_mut().follow(0.5, 1.0);
         seen.push(harness.state().camera.mode);
-        let view = harness.state().camera.view(0.0);
+        let view = harness.state().camera.view();
         assert!(view.eye.is_finite() && view.eye.distance(view.target) > 0.1, "{view:?}");
         if seen.last() == Some(&CameraMode::FirstPerson) {
             let head = harness.state().sim.pack().skeleton().head().unwrap();
@@ -245,11 +245,11 @@ fn the_cameras_go_round_and_come_back() {
     assert!(CameraMode::ALL.iter().all(|mode| seen.contains(mode)), "{seen:?}");
     // The arrow keys fly a free camera and leave the character alone.
     harness.state_mut().apply(ViewerCommand::Camera(CameraMode::Free));
-    let eye = harness.state().camera.view(0.0).eye;
+    let eye = harness.state().camera.view().eye;
     harness.key_down(egui::Key::ArrowUp);
     harness.run_steps(2);
     harness.state_mut().advance(0.1);
-    assert!(harness.state().camera.view(0.0).eye.distance(eye) > 0.2);
+    assert!(harness.state().camera.view().eye.distance(eye) > 0.2);
     assert_eq!(harness.state().input().left_stick, [0.0; 2]);
     harness.key_up(egui::Key::ArrowUp);
     harness.key_press(egui::Key::Home);

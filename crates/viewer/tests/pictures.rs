@@ -49,7 +49,9 @@ fn every_shader_passes_naga() {
 
 /// A picture from aside, of the last tick.
 fn shot<'a>(app: &App, shown: &'a Shown, trail: &'a Trail) -> Picture<'a> {
-    Picture { view: app.camera.view(0.7), alone: None, alpha: 1.0, shown, trail }
+    let mut camera = app.camera;
+    camera.around = 0.7;
+    Picture { view: camera.view(), alone: None, alpha: 1.0, shown, trail }
 }
 
 fn draw(gpu: &viewer::gpu::Gpu, app: &App, shown: &Shown) -> RgbaImage {
@@ -118,10 +120,11 @@ fn panels_over_the_picture_look_as_they_did() {
 /// The second frame of the demo: the first one lays out its widgets.
 fn draw_with_panels(gpu: &viewer::gpu::Gpu, mut app: App) -> RgbaImage {
     let mut composer = FrameComposer::new(gpu, OffScreen::FORMAT, appearance(&app));
+    app.camera.around = 0.7;
     let mut frame = |time: f64| {
         let rect = egui::Rect::from_min_size(egui::Pos2::ZERO, egui::vec2(640.0, 480.0));
         let input = egui::RawInput { screen_rect: Some(rect), time: Some(time), ..Default::default() };
-        let output = composer.panels(&mut app, input, 0.7);
+        let output = composer.panels(&mut app, input);
         composer.picture(&mut app, output, [640, 480], true).unwrap()
     };
     frame(0.0);
@@ -136,7 +139,7 @@ fn the_quality_changes_while_it_runs_and_keeps_the_ground() {
     let mut composer = FrameComposer::new(&gpu, OffScreen::FORMAT, appearance(&app));
     let [before, low, after] = [Quality::Automatic, Quality::Low, Quality::Automatic].map(|quality| {
         app.layout.preferences.quality = quality;
-        let output = composer.panels(&mut app, egui::RawInput::default(), 0.7);
+        let output = composer.panels(&mut app, egui::RawInput::default());
         composer.picture(&mut app, output, SIZE, false).unwrap()
     });
     assert!(before == after && before != low);
@@ -157,6 +160,6 @@ fn a_lost_device_is_an_error_and_no_panic() {
     let said = renderer.picture(&target, &scene).unwrap_err().to_string();
     assert!(said.contains("lost"), "{said}");
     assert!(gpu.lost().is_some(), "whoever draws next has to know");
-    let output = composer.panels(&mut app, egui::RawInput::default(), 0.7);
+    let output = composer.panels(&mut app, egui::RawInput::default());
     assert!(composer.picture(&mut app, output, SIZE, true).is_err());
 }

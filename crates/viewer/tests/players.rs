@@ -80,7 +80,7 @@ fn the_camera_sees_both_players() {
         drop(app.tick());
         app.follow(app.sim.tick_secs(), 1.0);
     }
-    let view = app.camera.view(0.0);
+    let view = app.camera.view();
     let clip = view.clip_from_world(16.0 / 9.0);
     for index in [0, SECOND_CHARACTER] {
         let seen = clip.project_point3(app.sim.poses(index, 1.0).positions[0]);

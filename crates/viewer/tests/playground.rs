@@ -271,7 +271,7 @@ fn the_mouse_drags_a_prop() {
     let mut harness = window();
     let barrel = shared(&harness.state().sim).prop_named("barrel_1").unwrap();
     let start = motion(&harness.state().sim, barrel).position;
-    let clip = harness.state().camera.view(0.0).clip_from_world(900.0 / 700.0).project_point3(start);
+    let clip = harness.state().camera.view().clip_from_world(900.0 / 700.0).project_point3(start);
     let at = egui::pos2((clip.x * 0.5 + 0.5) * 900.0, (0.5 - clip.y * 0.5) * 700.0);
     harness.drag_at(at);
     harness.run_steps(2);
@@ -345,7 +345,7 @@ fn the_camera_stays_before_walls_and_other_characters() {
         assert!(app.sim.carry(0, at));
         app.camera.reset(Heading::FORWARD);
         (0..300).for_each(|_| app.follow(1.0 / 60.0, 1.0));
-        let view = app.camera.view(0.0);
+        let view = app.camera.view();
         view.target.distance(view.eye)
     };
     let (open, beside_the_gate) = (Vec2::new(21.0, -8.0), Vec2::new(20.0, 2.0));

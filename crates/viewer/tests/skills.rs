@@ -17,7 +17,7 @@ fn harness(threshold: f32) -> Harness<'static, App> {
     let app = App::new(simulation_of(Arc::new(pack_with_skills(threshold))), layout);
     let mut harness = Harness::builder()
         .with_size(egui::vec2(900.0, 700.0))
-        .build_ui_state(|ui, app: &mut App| app.ui(ui, 0.0), app);
+        .build_ui_state(|ui, app: &mut App| app.ui(ui), app);
     harness.run_steps(2);
     harness
 }

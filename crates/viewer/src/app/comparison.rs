@@ -80,19 +80,19 @@ impl App {
         }
     }
 
-    /// The eye of a view, `around` radians about the character from where it steers.
-    fn eye_of(&self, view: usize, around: f32) -> View {
+    /// The eye of a view.
+    fn eye_of(&self, view: usize) -> View {
         let by = self.comparison.offsets.get(view).copied().unwrap_or_default();
-        let seen = self.camera.view(around);
+        let seen = self.camera.view();
         if self.views() == 1 { seen } else { View { eye: seen.eye + by, target: seen.target + by, ..seen } }
     }
 
     /// Sets the scene for the next picture of a view; a comparison shows one character in each.
-    pub fn set_scene(&self, scene: &mut Scene, around: f32, view: usize) {
+    pub fn set_scene(&self, scene: &mut Scene, view: usize) {
         let mut shown = self.layout.shown;
         shown.collision_shapes |= !self.has_mesh;
         let picture = Picture {
-            view: self.eye_of(view, around),
+            view: self.eye_of(view),
             alone: (self.views() > 1).then_some(view),
             alpha: self.alpha(),
             shown: &shown,

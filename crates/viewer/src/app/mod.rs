@@ -259,15 +259,15 @@ impl App {
         self.uses_pad && self.pad.name.is_some()
     }
 
-    /// All panels, keys and the mouse: one frame of the user's doing. `around` as in [`App::set_scene`].
-    pub fn ui(&mut self, ui: &mut Ui, around: f32) {
+    /// All panels, keys and the mouse: one frame of the user's doing.
+    pub fn ui(&mut self, ui: &mut Ui) {
         let mut commands = Vec::new();
         self.see_user(ui.ctx());
         ui.ctx().set_zoom_factor(self.layout.preferences.ui_scale);
         keys::read(ui, self, &mut commands);
         let free = panels::show(ui, self, &mut commands);
         self.free = free;
-        pick::read(ui, self, free, around, &mut commands);
+        pick::read(ui, self, free, &mut commands);
         for command in commands {
             self.apply(command);
         }

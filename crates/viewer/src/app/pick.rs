@@ -32,7 +32,7 @@ impl Grab {
 }
 
 /// Reads the mouse over `free`, the part of the window that no panel covers.
-pub(super) fn read(ui: &mut Ui, app: &App, free: Rect, around: f32, commands: &mut Vec<ViewerCommand>) {
+pub(super) fn read(ui: &mut Ui, app: &App, free: Rect, commands: &mut Vec<ViewerCommand>) {
     let screen = ui.ctx().content_rect();
     let response = ui.interact(free, ui.scope_id().with("picture"), egui::Sense::click_and_drag());
     if response.hovered() {
@@ -42,7 +42,7 @@ pub(super) fn read(ui: &mut Ui, app: &App, free: Rect, around: f32, commands: &m
         }
     }
     let (pointer, pressed) = ui.input(|input| (input.pointer.interact_pos(), input.pointer.press_origin()));
-    let view = app.camera.view(around);
+    let view = app.camera.view();
     let mut held = app.grab.is_some();
     match (&app.grab, pointer) {
         (None, Some(_)) if response.drag_started_by(PointerButton::Primary) => {

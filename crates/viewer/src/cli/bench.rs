@@ -124,6 +124,7 @@ fn frames_per_second(gpu: &Gpu, characters: usize) -> anyhow::Result<f64> {
     let mut renderer = Renderer::new(gpu, OffScreen::FORMAT, config, appearance);
     let target = OffScreen::new(gpu, [1280, 720]);
     let mut camera = Camera::default();
+    camera.around = 0.6;
     if characters > 1 {
         (camera.distance, camera.pitch) = (14.0, 0.4);
     }
@@ -132,7 +133,7 @@ fn frames_per_second(gpu: &Gpu, characters: usize) -> anyhow::Result<f64> {
     let mut draw = |sim: &Simulation, alpha: f32| -> anyhow::Result<f64> {
         let start = Instant::now();
         let picture = Picture {
-            view: camera.view(0.6),
+            view: camera.view(),
             alone: None,
             alpha,
             shown: &Shown::default(),

@@ -230,7 +230,6 @@ struct Painter {
     composer: FrameComposer,
     size: [u32; 2],
     panels: bool,
-    around: f32,
     fps: u32,
     folder: PathBuf,
     drawn: usize,
@@ -242,13 +241,13 @@ impl Painter {
             .with_context(|| format!("cannot make the folder {}", folder.display()))?;
         let gpu = Gpu::off_screen()?;
         app.adapter.clone_from(&gpu.adapter_name);
+        app.camera.around = demo.view_angle.to_radians();
         // Time does not matter here: full quality, whatever draws.
         let config = RenderConfig { shadow_size: 2048, shadow_taps: 16, ..RenderConfig::default() };
         Ok(Self {
             composer: FrameComposer::with_config(&gpu, OffScreen::FORMAT, config, appearance),
             size: demo.size,
             panels: demo.panels.is_some(),
-            around: demo.view_angle.to_radians(),
             fps: demo.fps,
             folder: folder.to_owned(),
             drawn: 0,
@@ -265,7 +264,7 @@ impl Painter {
             time: Some(self.drawn as f64 / f64::from(self.fps)),
             ..Default::default()
         };
-        let output = self.composer.panels(app, input, self.around);
+        let output = self.composer.panels(app, input);
         let picture = self.composer.picture(app, output, self.size, self.panels)?;
         app.plots.draw.push(start.elapsed().as_secs_f32() * 1e3);
         let path = self.folder.join(format!("frame_{:05}.png", self.drawn));

@@ -14,7 +14,7 @@ pub fn harness(app: App) -> Harness<'static, App> {
 
 /// A demo in a window of any size, points.
 pub fn harness_of(app: App, size: egui::Vec2) -> Harness<'static, App> {
-    Harness::builder().with_size(size).build_ui_state(|ui, app: &mut App| app.ui(ui, 0.0), app)
+    Harness::builder().with_size(size).build_ui_state(|ui, app: &mut App| app.ui(ui), app)
 }
 
 /// The same with one panel open.
