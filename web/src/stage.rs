@@ -146,7 +146,7 @@ impl Stage {
 
     fn set_scene(&mut self, game: &Game) {
         let scene = &mut self.scene;
-        scene.view = self.camera.view(0.0);
+        scene.view = self.camera.view();
         scene.focus = scene.view.target.with_z(0.0);
         scene.figures.clear();
         scene.things.clear();
