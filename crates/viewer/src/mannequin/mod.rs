@@ -16,11 +16,11 @@ pub use anatomy::{REST_OFFSETS, rest_positions};
 use simplify::simplified;
 
 /// Cells of the levels of detail, in units of the sizes in `anatomy`: close by, further off, and for a processor that draws.
-const COARSENESS: [f32; 3] = [1.4, 1.9, 2.8];
+const COARSENESS: [f32; 3] = [1.4, 1.9, 3.4];
 /// Edge of the cells in which vertices of the last of these become one, for crowds, metres.
 const CROWD_CELL_M: f32 = 0.08;
 
-/// Bytes of the mannequin as glTF 2.0 binary, about 2.3 MB. Takes about a second.
+/// Bytes of the mannequin as glTF 2.0 binary, about 2.2 MB. Takes about a second.
 #[must_use]
 pub fn generate() -> Vec<u8> {
     let sculpture = sculpt::Sculpture::new();

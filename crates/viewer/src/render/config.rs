@@ -43,7 +43,7 @@ impl RenderConfig {
     #[must_use]
     pub fn for_adapter(is_software: bool) -> Self {
         if is_software {
-            let level_pixels = [f32::INFINITY, f32::INFINITY, 150.0];
+            let level_pixels = [f32::INFINITY, f32::INFINITY, 240.0];
             Self { shadow_size: 1024, shadow_taps: 8, level_pixels, ..Self::default() }
         } else {
             Self::default()
