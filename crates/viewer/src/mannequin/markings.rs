@@ -1,18 +1,18 @@
 //! Dark markings on the shells, by which one sees how the body and its limbs turn: a line down the back of head and chest, a badge on
 //! the left of the chest, lines on the outer sides of the limbs, and a band around the left upper arm.
 
-use std::collections::BTreeMap;
-
 use glam::{Vec3, vec3};
 
 use super::bone::Bone;
 use super::field::{Shape, normal};
-use super::rim::{Point, Rimmed};
+use super::shell::{ByEdge, Point, Seek, Shell, ends, turned, used};
 
 /// Longest edge of a triangle at the edge of a marking, metres.
 const LONGEST_M: f32 = 0.017;
-/// Steps that bring a point onto the edge of a marking.
-const STEPS: usize = 6;
+/// What is nearer to the shell's surface than this lies on it, metres; walls of rims lie off it, and stay there.
+const ON_SHELL_M: f32 = 0.002;
+/// How a point is brought onto the edge of a marking.
+const SEEK: Seek = Seek { steps: 6, level: 0.0, least_slope: 0.05, reach: 0.01 };
 
 fn block(centre: Vec3, half: Vec3) -> Shape {
     Shape::Box { centre, half, round: 0.45 * half.min_element() }
@@ -46,61 +46,66 @@ pub(super) fn of(body: Bone) -> Vec<Shape> {
 }
 
 /// Parts a surface along the edge of its markings; returns what is not marked and what is.
-pub(super) fn parted(whole: Rimmed, shapes: &[Shape], shell: impl Fn(Vec3) -> f32) -> (Rimmed, Rimmed) {
+pub(super) fn parted(whole: Shell, shapes: &[Shape], shell: impl Fn(Vec3) -> f32) -> (Shell, Shell) {
     if shapes.is_empty() {
-        return (whole, Rimmed::default());
+        return (whole, Shell::default());
     }
     let marking = |p: Vec3| shapes.iter().map(|shape| shape.distance(p)).fold(f32::INFINITY, f32::min);
     let whole = refined(refined(whole, &marking, &shell), &marking, &shell);
     let mut points = whole.points;
     let distances: Vec<f32> = points.iter().map(|point| marking(point.position)).collect();
-    let mut crossings: BTreeMap<(u32, u32), u32> = BTreeMap::new();
+    let mut crossings = ByEdge::new();
     let mut crossing = |a: u32, b: u32| {
-        let ends = (a.min(b), a.max(b));
+        let ends = ends(a, b);
         *crossings.entry(ends).or_insert_with(|| {
-            let [p, q] = [ends.0, ends.1].map(|end| points[end as usize]);
             let [d, e] = [ends.0, ends.1].map(|end| distances[end as usize]);
-            let share = d / (d - e);
-            let at = on_edge(p.position.lerp(q.position, share), &marking, &shell);
-            let facing = p.normal.lerp(q.normal, share).normalize_or(p.normal);
-            points.push(Point { position: at, normal: facing });
+            let between = between(&points, ends, d / (d - e));
+            let on_shell = shell(between.position).abs() < ON_SHELL_M;
+            let position = SEEK.from(between.position, on_shell, &shell, marking);
+            points.push(Point { position, ..between });
             points.len() as u32 - 1
         })
     };
     let mut sides = [Vec::new(), Vec::new()];
     for corners in whole.indices.chunks_exact(3) {
-        let marked = [0, 1, 2].map(|corner| distances[corners[corner] as usize] < 0.0);
-        let first = (0..3).find(|i| marked[(i + 1) % 3] == marked[(i + 2) % 3]).unwrap_or(0);
-        let [a, b, c] = [0, 1, 2].map(|i| corners[(first + i) % 3]);
-        let (tip, rest) = (usize::from(marked[first]), usize::from(marked[(first + 1) % 3]));
+        let ([a, b, c], tip, rest) = turned(corners, |corner| distances[corner as usize] < 0.0);
         if tip == rest {
-            sides[tip].extend([a, b, c]);
+            sides[usize::from(tip)].extend([a, b, c]);
             continue;
         }
         let (ab, ac) = (crossing(a, b), crossing(a, c));
-        sides[tip].extend([a, ab, ac]);
-        sides[rest].extend([ab, b, c, ab, c, ac]);
+        sides[usize::from(tip)].extend([a, ab, ac]);
+        sides[usize::from(rest)].extend([ab, b, c, ab, c, ac]);
     }
-    let [plain, marked] = sides.map(|indices| used(&points, &indices));
+    let [plain, marked] = sides.map(|indices| {
+        let (points, indices) = used(&points, indices.into_iter());
+        Shell { points, indices }
+    });
     (plain, marked)
 }
 
+/// The point that is a share of the way along an edge.
+fn between(points: &[Point], ends: (u32, u32), share: f32) -> Point {
+    let [p, q] = [ends.0, ends.1].map(|end| points[end as usize]);
+    let normal = p.normal.lerp(q.normal, share).normalize_or(p.normal);
+    Point { position: p.position.lerp(q.position, share), normal }
+}
+
 /// The surface with long edges near the marking's edge halved: a triangle that is wider than a line would lose it.
-fn refined(whole: Rimmed, marking: &impl Fn(Vec3) -> f32, shell: &impl Fn(Vec3) -> f32) -> Rimmed {
+fn refined(whole: Shell, marking: &impl Fn(Vec3) -> f32, shell: &impl Fn(Vec3) -> f32) -> Shell {
     let mut points = whole.points;
-    let mut halves: BTreeMap<(u32, u32), Option<u32>> = BTreeMap::new();
+    let mut halves = ByEdge::new();
     let mut half_of = |a: u32, b: u32| {
-        let ends = (a.min(b), a.max(b));
+        let ends = ends(a, b);
         *halves.entry(ends).or_insert_with(|| {
-            let [p, q] = [ends.0, ends.1].map(|end| points[end as usize]);
-            let middle = p.position.lerp(q.position, 0.5);
-            let length = p.position.distance(q.position);
-            (length > LONGEST_M && marking(middle).abs() < 0.6 * length).then(|| {
-                let n = normal(middle, shell);
-                // Walls of rims lie off the shell's surface, and stay there.
-                let lift = if shell(middle).abs() < 0.002 { n * shell(middle) } else { Vec3::ZERO };
-                let facing = p.normal.lerp(q.normal, 0.5).normalize_or(p.normal);
-                points.push(Point { position: middle - lift, normal: facing });
+            let [p, q] = [ends.0, ends.1].map(|end| points[end as usize].position);
+            let (mut half, length) = (between(&points, ends, 0.5), p.distance(q));
+            (length > LONGEST_M && marking(half.position).abs() < 0.6 * length).then(|| {
+                let height = shell(half.position);
+                if height.abs() < ON_SHELL_M {
+                    half.position -= normal(half.position, shell) * height;
+                }
+                points.push(half);
                 points.len() as u32 - 1
             })
         })
@@ -122,49 +127,25 @@ fn refined(whole: Rimmed, marking: &impl Fn(Vec3) -> f32, shell: &impl Fn(Vec3) 
             }
         }
     }
-    Rimmed { points, indices }
-}
-
-/// The point of the marking's edge on the shell near `start`; `start` where none is near.
-fn on_edge(start: Vec3, marking: &impl Fn(Vec3) -> f32, shell: &impl Fn(Vec3) -> f32) -> Vec3 {
-    // Walls of rims lie off the shell's surface: they keep their height.
-    let height = shell(start);
-    let mut p = start;
-    for _ in 0..STEPS {
-        let n = normal(p, shell);
-        if height.abs() < 0.002 {
-            p -= n * shell(p);
-        }
-        let along = normal(p, marking).reject_from_normalized(n);
-        let slope = along.length_squared();
-        if slope > 0.05 {
-            p -= along * (marking(p) / slope);
-        }
-    }
-    if p.distance(start) < 0.01 { p } else { start }
-}
-
-/// The triangles with only the points that they use.
-fn used(points: &[Point], indices: &[u32]) -> Rimmed {
-    let mut place = vec![u32::MAX; points.len()];
-    let mut part = Rimmed::default();
-    for &index in indices {
-        let at = &mut place[index as usize];
-        if *at == u32::MAX {
-            *at = part.points.len() as u32;
-            part.points.push(points[index as usize]);
-        }
-        part.indices.push(*at);
-    }
-    part
+    Shell { points, indices }
 }
 
 #[cfg(test)]
 mod tests {
-    use super::super::{rim, surface_nets};
+    use super::super::surface_nets;
     use super::*;
 
-    fn area(part: &Rimmed) -> f32 {
+    /// A ball of 0.1 m with a belt around its equator, in cells of this edge: what is not marked, what is, and the share that is.
+    fn belted(half_width: f32, cell: f32) -> (Shell, Shell, f32) {
+        let ball = |p: Vec3| p.length() - 0.1;
+        let surface = surface_nets::mesh(Vec3::splat(-0.1), Vec3::splat(0.1), cell, ball);
+        let belt = [Shape::Box { centre: Vec3::ZERO, half: vec3(0.5, 0.5, half_width), round: 0.001 }];
+        let (plain, marked) = parted(Shell::of(&surface, ball), &belt, ball);
+        let share = area(&marked) / (area(&marked) + area(&plain));
+        (plain, marked, share)
+    }
+
+    fn area(part: &Shell) -> f32 {
         let at = |i: u32| part.points[i as usize].position;
         let triangles = part.indices.chunks_exact(3);
         triangles.map(|t| 0.5 * (at(t[1]) - at(t[0])).cross(at(t[2]) - at(t[0])).length()).sum()
@@ -172,12 +153,8 @@ mod tests {
 
     #[test]
     fn a_marking_takes_its_share_of_a_ball_and_has_a_straight_edge() {
-        let ball = |p: Vec3| p.length() - 0.1;
-        let surface = surface_nets::mesh(Vec3::splat(-0.1), Vec3::splat(0.1), 0.02, ball);
-        // A belt of h = 40 mm around the equator: an area of 2 pi r h, a fifth of the ball's 4 pi r^2.
-        let belt = [Shape::Box { centre: Vec3::ZERO, half: vec3(0.5, 0.5, 0.02), round: 0.001 }];
-        let (plain, marked) = parted(rim::plain(&surface, ball), &belt, ball);
-        let share = area(&marked) / (area(&marked) + area(&plain));
+        // A belt of h = 40 mm has an area of 2 pi r h, a fifth of the ball's 4 pi r^2.
+        let (plain, marked, share) = belted(0.02, 0.02);
         assert!((share - 0.2).abs() < 0.01, "{share}");
         let over = marked.points.iter().map(|p| p.position.z.abs()).fold(0.0, f32::max);
         let under = plain.points.iter().map(|p| p.position.z.abs()).fold(1.0, f32::min);
@@ -186,11 +163,7 @@ mod tests {
 
     #[test]
     fn a_line_narrower_than_the_triangles_is_kept() {
-        let ball = |p: Vec3| p.length() - 0.1;
-        let surface = surface_nets::mesh(Vec3::splat(-0.1), Vec3::splat(0.1), 0.035, ball);
-        let line = [Shape::Box { centre: Vec3::ZERO, half: vec3(0.5, 0.5, 0.008), round: 0.001 }];
-        let (plain, marked) = parted(rim::plain(&surface, ball), &line, ball);
-        let share = area(&marked) / (area(&marked) + area(&plain));
+        let (_, _, share) = belted(0.008, 0.035);
         assert!((share - 0.08).abs() < 0.01, "{share}");
     }
 }

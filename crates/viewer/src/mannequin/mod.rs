@@ -9,6 +9,7 @@ mod glb;
 mod markings;
 mod rim;
 mod sculpt;
+mod shell;
 mod simplify;
 mod surface_nets;
 

@@ -4,11 +4,10 @@
 //! too late. So the shell's mesh is cut along the exact curve where it stands [`RIM_M`] above what it covers. What lies beyond the curve is
 //! sunk in, and a wall stands between both edges.
 
-use std::collections::BTreeMap;
-
 use glam::Vec3;
 
 use super::field::normal;
+use super::shell::{ByEdge, Point, Seek, Shell, ends, turned};
 use super::surface_nets::Surface;
 
 /// Height above what it covers at which a shell ends, metres.
@@ -17,20 +16,6 @@ const RIM_M: f32 = 0.004;
 const WALL_M: f32 = 0.010;
 /// Steps that bring a point onto the curve.
 const STEPS: usize = 8;
-
-/// A point of a shell and the way it faces.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Point {
-    pub(super) position: Vec3,
-    pub(super) normal: Vec3,
-}
-
-/// Triangles of a shell with its rim, wound counter-clockwise seen from outside.
-#[derive(Default)]
-pub(super) struct Rimmed {
-    pub(super) points: Vec<Point>,
-    pub(super) indices: Vec<u32>,
-}
 
 /// Where the curve crosses an edge of the mesh: the shell's own edge, the wall's upper edge, and the lower one.
 #[derive(Clone, Copy)]
@@ -47,25 +32,21 @@ pub(super) fn rimmed(
     reach: f32,
     shell: impl Fn(Vec3) -> f32,
     covered: impl Fn(Vec3) -> f32,
-) -> Rimmed {
-    let mut cut = Cut { out: Rimmed::default(), crossings: BTreeMap::new(), reach, shell, covered };
+) -> Shell {
+    let mut cut = Cut { out: Shell::of(surface, &shell), crossings: ByEdge::new(), reach, shell, covered };
     let heights: Vec<f32> = surface.positions.iter().map(|p| (cut.covered)(*p) - RIM_M).collect();
-    for (position, height) in surface.positions.iter().zip(&heights) {
-        let facing = normal(*position, &cut.shell);
-        let sunk = if *height > 0.0 { *position } else { cut.sunk(*position) };
-        cut.out.points.push(Point { position: sunk, normal: facing });
+    cut.out.indices.clear();
+    for (index, _) in heights.iter().enumerate().filter(|(_, height)| **height <= 0.0) {
+        cut.out.points[index].position = cut.sunk(surface.positions[index]);
     }
     for corners in surface.indices.chunks_exact(3) {
-        let above = [0, 1, 2].map(|corner| heights[corners[corner] as usize] > 0.0);
-        // Turned so that the corner that is alone on its side comes first.
-        let Some(first) = (0..3).find(|i| above[(i + 1) % 3] == above[(i + 2) % 3]) else { continue };
-        let [a, b, c] = [0, 1, 2].map(|i| corners[(first + i) % 3]);
-        if above[first] == above[(first + 1) % 3] {
+        let ([a, b, c], first, others) = turned(corners, |corner| heights[corner as usize] > 0.0);
+        if first == others {
             cut.out.indices.extend([a, b, c]);
             continue;
         }
         let [ab, ac] = [b, c].map(|other| cut.crossing(surface, &heights, a, other));
-        let (tip, quad, wall) = if above[first] {
+        let (tip, quad, wall) = if first {
             ([a, ab.top, ac.top], [ab.foot, b, c, ac.foot], [ac.wall, ab.wall, ab.foot, ac.foot])
         } else {
             ([a, ab.foot, ac.foot], [ab.top, b, c, ac.top], [ab.wall, ac.wall, ac.foot, ab.foot])
@@ -78,16 +59,9 @@ pub(super) fn rimmed(
     cut.out
 }
 
-/// The surface as it is.
-pub(super) fn plain(surface: &Surface, shell: impl Fn(Vec3) -> f32) -> Rimmed {
-    let points =
-        surface.positions.iter().map(|&position| Point { position, normal: normal(position, &shell) });
-    Rimmed { points: points.collect(), indices: surface.indices.clone() }
-}
-
 struct Cut<S, C> {
-    out: Rimmed,
-    crossings: BTreeMap<(u32, u32), Crossing>,
+    out: Shell,
+    crossings: ByEdge<Crossing>,
     reach: f32,
     shell: S,
     covered: C,
@@ -99,12 +73,13 @@ impl<S: Fn(Vec3) -> f32, C: Fn(Vec3) -> f32> Cut<S, C> {
     }
 
     fn crossing(&mut self, surface: &Surface, heights: &[f32], a: u32, b: u32) -> Crossing {
-        let ends = (a.min(b), a.max(b));
+        let ends = ends(a, b);
         if let Some(known) = self.crossings.get(&ends) {
             return *known;
         }
         let [(p, u), (q, v)] = [ends.0, ends.1].map(|i| (surface.positions[i as usize], heights[i as usize]));
-        let at = self.on_curve(p.lerp(q, u / (u - v)));
+        let seek = Seek { steps: STEPS, level: RIM_M, least_slope: 1e-3, reach: self.reach };
+        let at = seek.from(p.lerp(q, u / (u - v)), true, &self.shell, &self.covered);
         let facing = normal(at, &self.shell);
         let up = normal(at, &self.covered);
         let outward = facing.reject_from_normalized(up).normalize_or(facing);
@@ -117,22 +92,6 @@ impl<S: Fn(Vec3) -> f32, C: Fn(Vec3) -> f32> Cut<S, C> {
         let new = Crossing { top: base, wall: base + 1, foot: base + 2 };
         self.crossings.insert(ends, new);
         new
-    }
-
-    /// The point of the curve near `start`, by Newton steps on both distances; `start` itself where they lead away.
-    fn on_curve(&self, start: Vec3) -> Vec3 {
-        let mut p = start;
-        for _ in 0..STEPS {
-            let n = normal(p, &self.shell);
-            p -= n * (self.shell)(p);
-            let up = normal(p, &self.covered);
-            let along = up.reject_from_normalized(n);
-            let slope = along.length_squared();
-            if slope > 1e-3 {
-                p -= along * (((self.covered)(p) - RIM_M) / slope);
-            }
-        }
-        if p.distance(start) <= self.reach { p } else { start }
     }
 }
 
@@ -148,7 +107,7 @@ mod tests {
         (|p: Vec3| (p + Vec3::Z * 0.18).length() - 0.2, |p: Vec3| p.z)
     }
 
-    fn made(cell: f32) -> Rimmed {
+    fn made(cell: f32) -> Shell {
         let (shell, floor) = lens();
         let surface = surface_nets::mesh(Vec3::splat(-0.4), Vec3::splat(0.3), cell, &shell);
         rimmed(&surface, cell, shell, floor)

@@ -5,7 +5,7 @@ use glam::{Vec3, Vec4};
 use super::anatomy::{self, Piece};
 use super::bone::Bone;
 use super::field::{Shape, normal, smooth_union};
-use super::rim::Rimmed;
+use super::shell::{Shell, used};
 use super::surface_nets::Surface;
 use super::{markings, rim, surface_nets};
 
@@ -59,7 +59,7 @@ impl Sculpture {
             let field = |p: Vec3| piece_distance(piece, p);
             let (surface, cell) = mesh_of(piece, coarseness);
             if piece.dark {
-                self.add(piece.body, &rim::plain(&surface, field), &mut suit);
+                self.add(piece.body, &Shell::of(&surface, field), &mut suit);
                 continue;
             }
             let whole = rim::rimmed(&surface, cell, field, |p| self.suit_distance(group, origin + p));
@@ -74,14 +74,14 @@ impl Sculpture {
     pub(super) fn plain_shells(&self, coarseness: f32) -> Part {
         let mut part = Part::default();
         for piece in self.shells.iter().filter(|piece| !piece.dark) {
-            let surface = rim::plain(&mesh_of(piece, coarseness).0, |p| piece_distance(piece, p));
+            let surface = Shell::of(&mesh_of(piece, coarseness).0, |p| piece_distance(piece, p));
             self.add(piece.body, &surface, &mut part);
         }
         part
     }
 
     /// Adds a surface in the frame of the body that carries it.
-    fn add(&self, body: Bone, surface: &Rimmed, part: &mut Part) {
+    fn add(&self, body: Bone, surface: &Shell, part: &mut Part) {
         let base = part.vertices.len() as u32;
         part.indices.extend(surface.indices.iter().map(|index| base + index));
         part.vertices.extend(surface.points.iter().map(|point| {
@@ -97,20 +97,13 @@ impl Sculpture {
         let field = |p: Vec3| self.suit_distance(group, p);
         let surface = surface_nets::mesh(low, high, SUIT_CELL * coarseness, field);
         let buried: Vec<bool> = surface.positions.iter().map(|&p| self.is_buried(group, p)).collect();
-        let mut new_index = vec![u32::MAX; surface.positions.len()];
-        for triangle in surface.indices.chunks_exact(3) {
-            if triangle.iter().all(|&i| buried[i as usize]) {
-                continue;
-            }
-            for &i in triangle {
-                if new_index[i as usize] == u32::MAX {
-                    new_index[i as usize] = part.vertices.len() as u32;
-                    let p = surface.positions[i as usize];
-                    part.vertices.push(self.vertex(p, normal(p, field), self.follow(group, p)));
-                }
-                part.indices.push(new_index[i as usize]);
-            }
-        }
+        let triangles = surface.indices.chunks_exact(3);
+        let shown = triangles.filter(|triangle| !triangle.iter().all(|&i| buried[i as usize]));
+        let (positions, indices) = used(&surface.positions, shown.flatten().copied());
+        let base = part.vertices.len() as u32;
+        part.indices.extend(indices.iter().map(|index| base + index));
+        let vertex = |&p: &Vec3| self.vertex(p, normal(p, field), self.follow(group, p));
+        part.vertices.extend(positions.iter().map(vertex));
     }
 
     /// True when the shell of the body it belongs to hides the point, however the joints bend.

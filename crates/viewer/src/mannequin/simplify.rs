@@ -6,6 +6,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use glam::Vec3;
 
 use super::sculpt::{Part, Vertex};
+use super::shell::used;
 
 /// What is less open to the sky than this lies under a shell: at a distance it is not seen.
 const HIDDEN_BELOW: f32 = 0.35;
@@ -35,16 +36,8 @@ pub(super) fn simplified(part: &Part, cell: f32) -> Part {
         }
     }
     let middles: Vec<Vertex> = clusters.values().map(|members| middle(part, members)).collect();
-    let mut simple = Part::default();
-    let mut place: BTreeMap<usize, u32> = BTreeMap::new();
-    for number in triangles.into_iter().flatten() {
-        let index = *place.entry(number).or_insert_with(|| {
-            simple.vertices.push(middles[number]);
-            simple.vertices.len() as u32 - 1
-        });
-        simple.indices.push(index);
-    }
-    simple
+    let (vertices, indices) = used(&middles, triangles.into_iter().flatten().map(|number| number as u32));
+    Part { vertices, indices }
 }
 
 fn cluster_of(vertex: &Vertex, cell: f32) -> Cluster {
