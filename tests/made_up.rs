@@ -49,6 +49,8 @@ pub fn pack(model: &Model, mjcf: &str) -> CharacterPack {
     let skill = SkillEntry {
         minimum_speed_mps: 0.0,
         maximum_speed_mps: None,
+        on_footfall: false,
+        running: None,
         clock_seconds: None,
         name: "bow".into(),
         policy: "bow".into(),

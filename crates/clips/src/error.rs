@@ -4,6 +4,8 @@ use std::path::PathBuf;
 
 use files::quoted;
 
+use crate::Leap;
+
 /// Why a clip can't be read or fitted.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
@@ -97,6 +99,19 @@ pub enum ClipError {
         duration: f32,
         /// First and last second that were asked for.
         found: [f32; 2],
+    },
+    /// A flight does not fit the clip that a leap is made of.
+    #[error(
+        "clip {clip}: expected a flight [from, to] with 0 < from < to < {duration} s that is to last longer, at most 2 s; found [{}, {}] and {} s",
+        found.flight[0], found.flight[1], found.seconds
+    )]
+    Leap {
+        /// Name of the clip.
+        clip: String,
+        /// Its seconds.
+        duration: f32,
+        /// What was asked for.
+        found: Leap,
     },
     /// A body that has hinges is not in the clip.
     #[error("clip {clip}: expected a body {expected}, found {found}")]

@@ -11,6 +11,7 @@ mod folder;
 mod humanoid;
 mod joint_fit;
 mod json;
+mod leap;
 mod motion;
 mod npy;
 mod pickle;
@@ -22,6 +23,7 @@ pub use error::ClipError;
 pub use fitted::{FitError, Fitted, fit};
 pub use folder::{ClipFolder, MOTIONS_VARIABLE, from_bytes, load_file};
 pub use joint_fit::JointFit;
+pub use leap::Leap;
 pub use motion::{MOTION_HZ, Motion, TICK_STRIDE, placed};
 
 use std::sync::Arc;

@@ -282,6 +282,68 @@ fn a_punch_reaches_ahead_and_ends_as_it_begins() {
     assert!(guards.truncate().length() < 0.45, "{guards}");
 }
 
+/// A run at 2.4 m/s that lifts its left thigh and swings its right one back; what is a flight is up to the test.
+fn running() -> Clip {
+    let mut clip = still(61);
+    clip.looping = true;
+    for (i, t) in clip.times.clone().into_iter().enumerate() {
+        clip.root_positions[i].x = 2.4 * t;
+        clip.local_rotations[i][body("left_thigh")] = Quat::from_rotation_y(-0.5);
+        clip.local_rotations[i][body("right_thigh")] = Quat::from_rotation_y(0.3);
+        clip.local_rotations[i][body("right_shin")] = Quat::from_rotation_y(0.4);
+        clip.local_rotations[i][body("left_shin")] = Quat::from_rotation_y(0.4);
+    }
+    clip.checked().unwrap()
+}
+
+#[test]
+fn a_leap_flies_as_long_as_it_is_to_and_as_a_body_falls() {
+    let (run, leap) = (running(), Leap { flight: [0.6, 0.75], seconds: 0.45 });
+    let made = run.leap(&leap).unwrap();
+    assert!(!made.looping && (made.duration() - run.duration() - 0.3).abs() < 0.02, "{}", made.duration());
+    let height = |secs: f32| made.sample(secs).0.z - 0.9;
+    // A flight of that time rises by g T^2 / 8; that of the clip itself is not counted twice.
+    let wanted = 9.81 / 8.0 * (0.45_f32.powi(2) - 0.15_f32.powi(2));
+    assert!((height(0.6 + 0.225) - wanted).abs() < 0.01, "{}", height(0.825));
+    assert!(
+        (height(0.6)).abs() < 0.01 && height(1.05).abs() < 0.02,
+        "it leaves and comes back at its height"
+    );
+    assert!(height(0.4) < -0.05 && height(1.3) < -0.05, "it dips before and after");
+    let steady = |secs: f32| (made.sample(secs).0.x - 2.4 * secs).abs();
+    assert!([0.3, 0.7, 1.0, 1.5].into_iter().all(|secs| steady(secs) < 0.02), "at the speed of the run");
+    let bend = |secs: f32, part: &str| 2.0 * made.sample(secs).1[body(part)].w.abs().min(1.0).acos();
+    assert!(
+        bend(0.4, "right_shin") > 0.5 && (bend(0.4, "left_shin") - 0.4).abs() < 0.01,
+        "the leg behind pushes off"
+    );
+    assert!(
+        bend(1.3, "left_shin") > 0.5 && (bend(1.3, "right_shin") - 0.4).abs() < 0.01,
+        "the leg ahead lands"
+    );
+    assert!(bend(0.825, "left_shin") > 0.8, "tucked up");
+}
+
+#[test]
+fn a_leap_needs_a_flight_within_its_clip_and_legs() {
+    for (flight, seconds) in [
+        ([0.0, 0.2], 0.4),
+        ([0.3, 0.2], 0.4),
+        ([1.5, 2.0], 0.6),
+        ([0.6, 0.8], 0.1),
+        ([0.6, 0.8], 2.5),
+        ([f32::NAN, 0.8], 0.4),
+        ([0.6, 0.8], f32::NAN),
+    ] {
+        let said = running().leap(&Leap { flight, seconds }).unwrap_err().to_string();
+        assert!(said.contains("flight") && said.contains("found"), "{said}");
+    }
+    let mut clip = running();
+    clip.bodies = clip.bodies.iter().map(|name| name.replace("left_foot", "paw")).collect();
+    let said = clip.leap(&Leap { flight: [0.6, 0.8], seconds: 0.4 }).unwrap_err().to_string();
+    assert!(said.contains("left_foot"), "{said}");
+}
+
 #[test]
 fn side_steps_need_legs() {
     let mut clip = still(2);

@@ -88,6 +88,8 @@ fn pack(falls: bool) -> Arc<CharacterPack> {
     let roll = SkillEntry {
         minimum_speed_mps: 0.0,
         maximum_speed_mps: None,
+        on_footfall: false,
+        running: None,
         clock_seconds: None,
         name: "roll".into(),
         policy: "roll".into(),

@@ -272,7 +272,7 @@ impl Controller {
         let report = &mut self.state.report;
         report.blend = match (report.skill, manual) {
             (Some(progress), _) => skills::way_out(&self.pack, progress, state, report.blend)
-                .unwrap_or_else(|| Blend::single(self.pack.skills()[progress.skill.index()].policy)),
+                .unwrap_or_else(|| Blend::single(self.pack.skills()[progress.acts.index()].policy)),
             (None, Some(blend)) => blend,
             (None, None) => {
                 let blend = self.state.fall.acting_position(report.position).blend();
@@ -309,7 +309,7 @@ impl Controller {
     fn clock(&self) -> Option<[f32; 2]> {
         let report = &self.state.report;
         let progress = report.skill?;
-        let skill = &self.pack.skills()[progress.skill.index()];
+        let skill = &self.pack.skills()[progress.acts.index()];
         let acts = report.blend == Blend::single(skill.policy);
         skill.clock_seconds.filter(|_| acts).map(|seconds| clock_input(progress.seconds, seconds))
     }

@@ -265,6 +265,12 @@ pub struct SkillEntry {
     /// Speed above which it does not start, metres per second; `None` for no such condition.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub maximum_speed_mps: Option<f32>,
+    /// True for a skill that starts as a foot comes down.
+    #[serde(default, skip_serializing_if = "is_false")]
+    pub on_footfall: bool,
+    /// Name of the skill that acts in its place out of a run; it has a `minimum_speed_mps`.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub running: Option<String>,
     /// Seconds of the clock that the policy sees in place of the target; `None` for a policy that sees the target.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub clock_seconds: Option<f32>,

@@ -140,6 +140,8 @@ impl SkillOne {
             entry: self.entry,
             minimum_speed_mps: 0.0,
             maximum_speed_mps: None,
+            on_footfall: false,
+            running: None,
             clock_seconds: None,
             returns_to: self.returns_to,
             discriminator: self.discriminator,

@@ -77,6 +77,7 @@ mod excerpt;
 mod fall;
 mod features;
 mod fixed_rate;
+mod footfall;
 mod footing;
 pub mod format;
 mod format_one;

@@ -49,6 +49,16 @@ pub enum PackError {
         /// The number in the pack.
         found: f32,
     },
+    /// A skill that can't act in place of another one out of a run.
+    #[error(
+        "expected running of skill \"{skill}\" to be a skill with a minimum_speed_mps above 0 and no running of its own, found \"{found}\""
+    )]
+    Running {
+        /// The skill in whose place it is to act.
+        skill: String,
+        /// The skill that the pack names.
+        found: String,
+    },
     /// A name stands for nothing.
     #[error("expected the name of a {kind} in {field}, found {found:?}")]
     UnknownName {

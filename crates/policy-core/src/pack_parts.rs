@@ -12,7 +12,7 @@ use crate::format::{
     PACK_VERSION, SkeletonEntry, SkillEntry,
 };
 use crate::graph::{Edge, GraphError, MAX_NODES, PolicyGraph, check_names};
-use crate::ids::{BodyId, DiscriminatorId, NodeId, PolicyId};
+use crate::ids::{BodyId, DiscriminatorId, NodeId, PolicyId, SkillId};
 use crate::mlp::Mlp;
 use crate::pack::PackTensors;
 use crate::pack_error::PackError;
@@ -196,6 +196,8 @@ pub(crate) fn skill(entry: &SkillEntry, names: &[&str], m: &Manifest) -> Result<
         entry: entry.entry.iter().map(|n| find_node(field(), n, names)).collect::<Result<_, _>>()?,
         minimum_speed_mps: minimum_speed(entry, field())?,
         maximum_speed_mps: maximum_speed(entry, field())?,
+        on_footfall: entry.on_footfall,
+        running: running(entry, m)?,
         clock_seconds: clock_seconds(entry, field())?,
         returns_to: find_node(field(), &entry.returns_to, names)?,
         discriminator: match &entry.discriminator {
@@ -226,6 +228,18 @@ fn maximum_speed(entry: &SkillEntry, owner: String) -> Result<f32, PackError> {
     } else {
         Err(PackError::Number { field, owner, expected, found })
     }
+}
+
+/// What acts in place of a skill out of a run: one that needs a speed, and in whose place nothing else acts.
+fn running(entry: &SkillEntry, m: &Manifest) -> Result<Option<SkillId>, PackError> {
+    let Some(name) = &entry.running else { return Ok(None) };
+    let field = alloc::format!("running of skill \"{}\"", entry.name);
+    let id = SkillId::new(find("skill", field, name, &mut m.skills.iter().map(|s| s.name.as_str()))?);
+    let other = &m.skills[id.index()];
+    if other.minimum_speed_mps > 0.0 && other.running.is_none() {
+        return Ok(Some(id));
+    }
+    Err(PackError::Running { skill: entry.name.clone(), found: name.clone() })
 }
 
 fn clock_seconds(entry: &SkillEntry, owner: String) -> Result<Option<f32>, PackError> {

@@ -39,6 +39,10 @@ pub struct Skill {
     /// Horizontal speed of the root above which it does not start, metres per second: a pending skill waits until the character is
     /// slow enough, does not tip over, and has settled after another skill. Infinite for no such condition.
     pub maximum_speed_mps: f32,
+    /// True for one that starts as a foot comes down, once the character has settled after another skill: it continues a stride.
+    pub on_footfall: bool,
+    /// What acts in its place where that one may start at once: a jump in the stride of a run. Reports go on naming this skill.
+    pub running: Option<SkillId>,
     /// Seconds in which the clock of a timed skill runs once ([`clock_input`]); `None` for a skill that sees the target.
     pub clock_seconds: Option<f32>,
     /// Node that runs afterwards.
@@ -100,6 +104,8 @@ pub enum Refusal {
 pub struct SkillProgress {
     /// The skill.
     pub skill: SkillId,
+    /// The skill that acts: the same, or its [`Skill::running`].
+    pub acts: SkillId,
     /// Seconds since it started.
     pub seconds: f32,
     /// Seconds that the score has held.
@@ -112,7 +118,7 @@ impl SkillProgress {
     /// A skill that starts now.
     #[must_use]
     pub fn start(skill: SkillId) -> Self {
-        Self { skill, seconds: 0.0, held_seconds: 0.0, score: None }
+        Self { skill, acts: skill, seconds: 0.0, held_seconds: 0.0, score: None }
     }
 
     /// Takes one control tick: the discriminator's score, if there is one, and the root's height above the ground, metres.

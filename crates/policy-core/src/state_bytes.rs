@@ -17,12 +17,12 @@ use crate::report::{StateFault, TickReport};
 use crate::skill::{Refusal, SkillEnd, SkillProgress};
 
 /// First four bytes: `PSS` and the version.
-const VERSION: u32 = u32::from_le_bytes(*b"PSS\x0d");
+const VERSION: u32 = u32::from_le_bytes(*b"PSS\x0e");
 
 const POSITION_LEN: usize = 2 + 2 + 4;
 const BLEND_LEN: usize = 1 + MAX_BLEND_TERMS * (2 + 4 * MAX_LAYERS);
 const SKILL_LEN: usize = 3;
-const PROGRESS_LEN: usize = SKILL_LEN + 4 + 4 + 1 + 4;
+const PROGRESS_LEN: usize = 2 * SKILL_LEN + 4 + 4 + 1 + 4;
 const REPORT_LEN: usize =
     2 * POSITION_LEN + BLEND_LEN + 1 + 8 + PROGRESS_LEN + 2 * SKILL_LEN + 2 * (SKILL_LEN + 1) + 3;
 const FIXED_LEN: usize = 4 + REPORT_LEN + 8 + 2 + BLEND_LEN + 4 + SKILL_LEN + 12 + 13 + 12 + 57 + 24 + 8;
@@ -184,6 +184,7 @@ impl Writer<'_> {
         let progress =
             r.skill.unwrap_or(SkillProgress { seconds: 0.0, ..SkillProgress::start(SkillId::new(0)) });
         self.skill(r.skill.map(|s| s.skill));
+        self.skill(r.skill.map(|s| s.acts));
         self.floats(&[progress.seconds, progress.held_seconds]);
         self.put([u8::from(progress.score.is_some())]);
         self.floats(&[progress.score.unwrap_or(0.0)]);
@@ -279,10 +280,11 @@ impl Reader<'_> {
         let evaluation = self.one_of(&EVALUATIONS, "evaluation")?;
         let target = [self.float(), self.float()];
         let running = self.skill()?;
+        let acts = self.skill()?.unwrap_or_default();
         let [seconds, held_seconds] = [self.float(), self.float()];
         let scored = self.flag()?;
         let score = Some(self.float()).filter(|_| scored);
-        let skill = running.map(|skill| SkillProgress { skill, seconds, held_seconds, score });
+        let skill = running.map(|skill| SkillProgress { skill, acts, seconds, held_seconds, score });
         let (pending_skill, skill_started) = (self.skill()?, self.skill()?);
         let (ended, end) = (self.skill()?, self.one_of(&ENDS, "end of a skill")?);
         let (refused, why) = (self.skill()?, self.one_of(&REFUSALS, "refusal")?);

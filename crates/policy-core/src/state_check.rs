@@ -59,10 +59,20 @@ impl ControllerState {
         let some = self.rest.rested == 0 || !self.rest.last.terms().is_empty();
         field("resting blend", "a policy", some)?;
         let r = &self.report;
-        let skills = [r.skill.map(|s| s.skill), r.pending_skill, r.skill_started, self.interrupted];
+        let skills = [
+            r.skill.map(|s| s.skill),
+            r.skill.map(|s| s.acts),
+            r.pending_skill,
+            r.skill_started,
+            self.interrupted,
+        ];
         let ended = [r.skill_ended.map(|(s, _)| s)];
         let all = skills.iter().chain(&ended).flatten().all(|s| s.index() < pack.skills().len());
-        field("skill", "skills of the pack", all)
+        field("skill", "skills of the pack", all)?;
+        let acts = r
+            .skill
+            .is_none_or(|s| s.acts == s.skill || pack.skills()[s.skill.index()].running == Some(s.acts));
+        field("skill that acts", "the skill or what acts in its place out of a run", acts)
     }
 
     fn check_finite(&self) -> Result<(), StateError> {

@@ -7,6 +7,7 @@ pub use crate::blend::{BlendFull, BlendTerm, MAX_BLEND_TERMS};
 pub use crate::evaluator::Evaluation;
 pub use crate::fall::{FallDetector, Heights, LATE_RISE_SECONDS, RISE_SECONDS, fall_height, step_heights};
 pub use crate::features::{FRAME_AGES, FrameHistory, HISTORY_LEN, discriminator_frame_into};
+pub use crate::footfall::foot_comes_down;
 pub use crate::graph::{Edge, GraphError, MAX_NODES, Node};
 pub use crate::ids::{DiscriminatorId, JointId};
 pub use crate::mlp::{Layer, MAX_LAYERS, MAX_WIDTH, MlpError};

@@ -1,6 +1,6 @@
 //! `engines/bevy`, a workspace of its own with a toolchain of its own: formatting, clippy and the tests without a window.
 //!
-//! The examples with a window need Bevy's renderer, which takes a quarter of an hour to compile; they are not built here.
+//! The examples with a window need Bevy's renderer, which takes a quarter of an hour to compile: they are checked, and not built.
 
 use std::path::PathBuf;
 use std::process::Command;
@@ -15,6 +15,9 @@ const COMPONENTS: [&str; 2] = ["clippy", "rustfmt"];
 
 /// Features that need no renderer, in one set: another set of features would compile most of Bevy again.
 const FEATURES: &str = "--features=mujoco,reload";
+
+/// What the examples with a window need. Gamepads are left out: they need the headers of libudev.
+const WINDOW: &str = "--features=window,mujoco";
 
 /// Checks the crate `bevy_policy_space`.
 ///
@@ -33,6 +36,16 @@ pub fn check(workspace: &Workspace) -> Result<Verdict> {
         "warnings",
     ]))
     .context("clippy")?;
+    run(cargo(workspace, &channel).args([
+        "clippy",
+        "--locked",
+        WINDOW,
+        "--examples",
+        "--",
+        "-D",
+        "warnings",
+    ]))
+    .context("clippy of the examples with a window")?;
     // Without the examples, which clippy has compiled.
     run(cargo(workspace, &channel).args(["test", "--locked", FEATURES, "--lib", "--tests"]))
         .context("tests")?;

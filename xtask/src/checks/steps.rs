@@ -41,7 +41,7 @@ pub const ALL: &[Step] = &[
     Step { name: "page: wasm32", run: page },
     C_PROGRAM,
     Step { name: "Rapier: enhanced-determinism", run: determinism },
-    Step { name: "engines/bevy: no window", run: bevy::check },
+    Step { name: "engines/bevy", run: bevy::check },
     Step { name: "documentation", run: documentation },
     Step { name: "tests", run: tests_all },
 ];

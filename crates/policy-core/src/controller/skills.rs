@@ -10,12 +10,13 @@ use crate::blend::Blend;
 use crate::command::{Command, Goal};
 use crate::controller_state::ControllerState;
 use crate::fall::{Heights, fall_height, lies};
+use crate::footfall::foot_comes_down;
 use crate::heading::Heading;
 use crate::ids::{NodeId, SkillId};
 use crate::observation::TARGET_RANGE_METRES;
 use crate::pack::CharacterPack;
 use crate::path::GraphPosition;
-use crate::skill::{Refusal, SkillEnd, SkillProgress};
+use crate::skill::{Refusal, Skill, SkillEnd, SkillProgress};
 use crate::state::CharacterState;
 use crate::state_check::countdown_secs;
 
@@ -69,12 +70,16 @@ pub(super) fn way_out(
     (still || before == lowest).then_some(lowest)
 }
 
+fn horizontal_speed(state: &CharacterState) -> f32 {
+    state.root().linear_velocity.truncate().length()
+}
+
 impl Controller {
     /// Runs the skill that is on for a tick, and ends it when it has come to its end.
     pub(super) fn run_skill(&mut self, state: &CharacterState, heights: Heights, dt: f32) {
         let Some(mut progress) = self.state.report.skill else { return };
         let pack = Arc::clone(&self.pack);
-        let skill = &pack.skills()[progress.skill.index()];
+        let skill = &pack.skills()[progress.acts.index()];
         let history = &mut self.state.history;
         let score = skill.discriminator.and_then(|d| self.scorer.score(&pack, d, state, history));
         let Some(end) = progress.tick(&skill.end, score, heights.root, dt) else {
@@ -97,7 +102,7 @@ impl Controller {
     /// Starts the recovery skill of a character that lies. Another one that was pending is refused.
     fn recover(&mut self, recovery: SkillId) {
         let pending = self.state.report.pending_skill.filter(|pending| *pending != recovery);
-        self.start_skill(recovery);
+        self.start_skill(recovery, recovery);
         if let Some(pending) = pending {
             self.state.report.skill_refused = Some((pending, Refusal::Fell));
         }
@@ -142,16 +147,19 @@ impl Controller {
             self.state.report.pending_skill = None;
             return;
         }
-        let skill = &self.pack.skills()[pending.index()];
-        let speed = state.root().linear_velocity.truncate().length();
+        let acts = self.acting(pending, state);
+        let skill = &self.pack.skills()[acts.index()];
+        let speed = horizontal_speed(state);
         let [least, most] = [skill.minimum_speed_mps, skill.maximum_speed_mps];
         let stands =
             || self.state.pending_secs > LONGEST_UNBALANCED_SECS || is_balanced(self.pack.skeleton(), state);
         // One without conditions starts in any state.
         let calm = most.is_infinite() || (speed <= most && self.state.settle_secs == 0.0 && stands());
         let in_range = speed >= least && calm;
-        if in_range && skill.starts_from(self.state.report.position.nearest_node()) {
-            return self.start_skill(pending);
+        let in_step = !skill.on_footfall
+            || (self.state.settle_secs == 0.0 && foot_comes_down(self.pack.skeleton(), state));
+        if in_range && in_step && skill.starts_from(self.state.report.position.nearest_node()) {
+            return self.start_skill(pending, acts);
         }
         self.state.pending_secs += dt;
         if self.state.pending_secs > LONGEST_PENDING_SECS {
@@ -169,10 +177,27 @@ impl Controller {
         Command { goal: Goal::Stay, target, ..*command }
     }
 
+    /// What acts once a skill starts: the skill, or what acts in its place out of a run.
+    fn acting(&self, skill: SkillId, state: &CharacterState) -> SkillId {
+        let skills = self.pack.skills();
+        let node = self.state.report.position.nearest_node();
+        let fits = |running: &SkillId| {
+            let running = &skills[running.index()];
+            running.starts_from(node) && horizontal_speed(state) >= running.minimum_speed_mps
+        };
+        skills[skill.index()].running.filter(fits).unwrap_or(skill)
+    }
+
+    /// The skill that is pending, or what would act in its place now.
+    pub(super) fn pending(&self, state: &CharacterState) -> Option<&Skill> {
+        let pending = self.state.report.pending_skill?;
+        Some(&self.pack.skills()[self.acting(pending, state).index()])
+    }
+
     /// The target of a tick: the command's. A pending skill that needs speed runs straight ahead while there is none.
     pub(super) fn target(&self, state: &CharacterState, command: &Command) -> Option<Vec2> {
-        let skill = self.state.report.pending_skill.map(|s| &self.pack.skills()[s.index()]);
-        let runs_up = skill.is_some_and(|s| s.minimum_speed_mps > 0.0) && self.state.report.skill.is_none();
+        let runs_up = self.pending(state).is_some_and(|s| s.minimum_speed_mps > 0.0)
+            && self.state.report.skill.is_none();
         command.target.or_else(|| {
             let root = state.root();
             let ahead = Heading::from_rotation(root.rotation).direction() * TARGET_RANGE_METRES;
@@ -187,10 +212,11 @@ impl Controller {
         (up && self.pack.recovery() == Some(skill)).then_some(Refusal::Upright)
     }
 
-    /// Starts a skill in place of whatever runs.
-    pub(super) fn start_skill(&mut self, skill: SkillId) {
+    /// Starts a skill in place of whatever runs; `acts` is the skill, or what acts in its place.
+    pub(super) fn start_skill(&mut self, skill: SkillId, acts: SkillId) {
         let report = &mut self.state.report;
-        if let Some(running) = report.skill.replace(SkillProgress::start(skill)) {
+        let progress = SkillProgress { acts, ..SkillProgress::start(skill) };
+        if let Some(running) = report.skill.replace(progress) {
             report.skill_ended = Some((running.skill, SkillEnd::Interrupted));
         }
         (report.skill_started, report.pending_skill) = (Some(skill), None);

@@ -9,6 +9,7 @@ use crate::ids::{NodeId, SkillId};
 use crate::pack::CharacterPack;
 use crate::path::GraphPosition;
 use crate::report::TickReport;
+use crate::skill::SkillProgress;
 
 /// Why a pack can't take the place of another.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
@@ -34,7 +35,6 @@ impl Controller {
         let (graph, new_graph) = (self.pack.graph(), pack.graph());
         let skill = |id: SkillId| pack.skill_named(&self.pack.skills()[id.index()].name);
         let position = carried(graph, new_graph, old.position);
-        let running = old.skill.and_then(|progress| Some((progress, skill(progress.skill)?)));
         let pending = old.pending_skill.and_then(skill);
         let mut config = self.config;
         config.start = new_graph.node_named(&graph.node(self.start_node()).name).unwrap_or_default();
@@ -42,8 +42,11 @@ impl Controller {
         let mut state = ControllerState::new(&pack);
         state.report = TickReport::at(position.unwrap_or(start));
         state.report.pending_skill = pending;
-        state.report.skill =
-            running.map(|(progress, skill)| crate::skill::SkillProgress { skill, ..progress });
+        state.report.skill = old.skill.and_then(|running| {
+            let (named, acts) = (skill(running.skill)?, skill(running.acts)?);
+            let goes_on = acts == named || pack.skills()[named.index()].running == Some(acts);
+            goes_on.then_some(SkillProgress { skill: named, acts, ..running })
+        });
         state.interrupted = self.state.interrupted.and_then(skill);
         state.pending_secs = self.state.pending_secs;
         state.settle_secs = self.state.settle_secs;

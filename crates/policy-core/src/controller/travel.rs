@@ -24,9 +24,9 @@ const ASSIST_SECONDS: f32 = 0.1;
 
 impl Controller {
     /// Where on the graph to go: to the nearest node that a pending skill may start from, else to the command's goal.
-    fn goal(&self, command: &Command) -> GraphPosition {
+    fn goal(&self, state: &CharacterState, command: &Command) -> GraphPosition {
         let (graph, report) = (self.pack.graph(), &self.state.report);
-        let goal = match report.pending_skill.map(|s| &self.pack.skills()[s.index()].entry) {
+        let goal = match self.pending(state).map(|skill| &skill.entry) {
             Some(entry) => {
                 let from = report.position.nearest_node();
                 let cost = |node: &&NodeId| graph.routes().cost(from, **node);
@@ -41,7 +41,7 @@ impl Controller {
     /// Where on the graph to go, and the command; a character that is to leave a policy that strafes stays, and turns to its target first.
     /// One that comes to a stand for a skill, or stands after one, has no target: a gait that stands brakes only without.
     pub(super) fn bound_for(&self, state: &CharacterState, command: &Command) -> (Command, GraphPosition) {
-        let (position, goal) = (self.state.report.position, self.goal(command));
+        let (position, goal) = (self.state.report.position, self.goal(state, command));
         let held = self.state.report.pending_skill.is_some() || self.state.settle_secs > 0.0;
         let is_to_stand = goal.as_node().is_some_and(|node| self.pack.graph().node(node).stands());
         if held && is_to_stand && self.state.report.skill.is_none() {
@@ -70,7 +70,7 @@ impl Controller {
             (self.config.assist_rise, self.state.fall.rising_seconds() > ASSIST_SECONDS, self.pack.recovery())
         {
             let (rising, pending) = (self.state.fall.rising_seconds, self.state.report.pending_skill);
-            self.start_skill(recovery);
+            self.start_skill(recovery, recovery);
             self.state.fall.rising_seconds = rising;
             // The character rises for it.
             self.state.report.pending_skill = pending;

@@ -166,6 +166,8 @@ pub fn manifest() -> Manifest {
         entry: entry.iter().map(|n| (*n).into()).collect(),
         minimum_speed_mps: 0.0,
         maximum_speed_mps: None,
+        on_footfall: false,
+        running: None,
         clock_seconds: None,
         returns_to: "walk".into(),
         discriminator: Some("walk".into()),

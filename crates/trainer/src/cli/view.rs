@@ -7,7 +7,7 @@ use std::process::Command;
 
 use anyhow::{Context, Result, bail};
 use clap::Args;
-use clips::{ClipFolder, Fitted, fit, load_file};
+use clips::{ClipFolder, Fitted, Leap, fit, load_file};
 use files::write_atomically;
 use physics_bridge::Model;
 use serde::Serialize;
@@ -32,6 +32,9 @@ pub(crate) struct Arguments {
     /// Make a punch of its first pose.
     #[arg(long, conflicts_with = "side_steps")]
     punch: bool,
+    /// Make a leap of a run: a flight between these seconds lasts so long, as `0.27,0.43,0.35`.
+    #[arg(long, value_name = "FROM,TO,SECONDS", value_parser = leap)]
+    leap: Option<Leap>,
     /// File to write the poses to: JSON, one list of `qpos` a control tick.
     #[arg(long)]
     poses: Option<PathBuf>,
@@ -49,6 +52,14 @@ fn pace(text: &str) -> Result<f32, String> {
 
 fn side_steps(text: &str) -> Result<f32, String> {
     number(text, 0.1..=1.5)
+}
+
+fn leap(text: &str) -> Result<Leap, String> {
+    let numbers: Vec<f32> = text.split(',').map_while(|number| number.parse().ok()).collect();
+    match numbers[..] {
+        [from, to, seconds] => Ok(Leap { flight: [from, to], seconds }),
+        _ => Err("expected three numbers, as 0.27,0.43,0.35".into()),
+    }
 }
 
 /// A number within the range that a recipe allows too.
@@ -75,6 +86,7 @@ pub(crate) fn run(model: &Model, folder: impl Fn() -> Result<ClipFolder>, a: &Ar
         pace: a.pace,
         side_steps_mps: a.side_steps,
         punch: a.punch,
+        leap: a.leap,
         ..ClipShare::whole(&clip.name)
     };
     let clip = made.made_of(clip)?;

@@ -140,6 +140,10 @@ impl PackPlan {
         for skill in &mut self.skills {
             skill.entry.retain(|n| trained(n));
         }
+        let names: Vec<String> = self.skills.iter().map(|skill| skill.name.clone()).collect();
+        for skill in &mut self.skills {
+            skill.running = skill.running.take().filter(|name| names.contains(name));
+        }
         self.recovery = self.recovery.filter(|r| self.skills.iter().any(|s| s.name == *r));
         self
     }

@@ -177,11 +177,13 @@ impl Recipe {
                 ppo.symmetry.to_string(),
             ),
             (
-                reset
-                    .in_play
-                    .is_none_or(|in_play| !together && in_play.maximum_speed_mps.is_some() == tracks),
+                reset.in_play.is_none_or(|in_play| {
+                    let stands = in_play.maximum_speed_mps.is_some();
+                    let runs = in_play.out_of == OutOf::Run;
+                    !together && !(stands && runs) && (stands || runs) == tracks
+                }),
                 "environment.reset.in_play",
-                "none beside paths; with a tracking_weight one with a maximum_speed_mps, and without a tracking_weight one without",
+                "none beside paths; with a tracking_weight one with a maximum_speed_mps or an out_of of \"run\", and without a tracking_weight one without either",
                 format!("{:?}", reset.in_play),
             ),
             (

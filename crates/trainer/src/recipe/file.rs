@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use clips::{Clip, ClipError, ClipFolder};
+use clips::{Clip, ClipError, ClipFolder, Leap};
 use files::quoted;
 use files::read_text_bounded;
 use serde::de::DeserializeOwned;
@@ -47,6 +47,9 @@ pub struct ClipShare {
     /// True for a punch that is made of its first pose.
     #[serde(default, skip_serializing_if = "is_false")]
     pub punch: bool,
+    /// The flight of a run that becomes a leap, in seconds of the clip at its pace.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub leap: Option<Leap>,
 }
 
 impl ClipShare {
@@ -64,6 +67,7 @@ impl ClipShare {
             pace: 1.0,
             side_steps_mps: None,
             punch: false,
+            leap: None,
         }
     }
 
@@ -78,7 +82,7 @@ impl ClipShare {
     /// What counts of a clip, and what is made of it.
     ///
     /// # Errors
-    /// When the clip is shorter than the seconds that count, or lacks the limbs that side steps or a punch need.
+    /// When the clip is shorter than the seconds that count, or its limbs or its flight are not those that are needed for what is made of it.
     pub fn made_of(&self, mut clip: Clip) -> Result<Clip, ClipError> {
         if let Some(seconds) = self.seconds {
             clip = clip.excerpt(seconds)?;
@@ -94,6 +98,9 @@ impl ClipShare {
         }
         if self.pace != 1.0 {
             clip = clip.at_pace(self.pace)?;
+        }
+        if let Some(leap) = &self.leap {
+            clip = clip.leap(leap)?;
         }
         match self.hold_seconds {
             Some(seconds) => clip.held(seconds),

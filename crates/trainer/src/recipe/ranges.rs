@@ -14,6 +14,8 @@ const RANGES: &[(&str, f64, f64)] = &[
     ("clips.hold_seconds", 0.0, 60.0),
     ("clips.pace", 0.1, 10.0),
     ("clips.side_steps_mps", 0.1, 1.5),
+    ("clips.leap.flight", 0.0, 600.0),
+    ("clips.leap.seconds", 0.0, 2.0),
     ("phases.samples", 1.0, 1e12),
     ("environment.num_envs", 1.0, 65_536.0),
     ("environment.horizon", 1.0, 1024.0),

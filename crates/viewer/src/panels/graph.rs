@@ -31,7 +31,7 @@ pub(super) fn show(ui: &mut Ui, app: &App, commands: &mut Vec<ViewerCommand>) {
         let text = format!("{:.1}", edge.distance);
         painter.text(a.lerp(b, 0.5), Align2::CENTER_CENTER, text, small.clone(), ui.visuals().text_color());
     }
-    let running = report.skill.map(|s| app.sim.pack().skills()[s.skill.index()].policy);
+    let running = report.skill.map(|s| app.sim.pack().skills()[s.acts.index()].policy);
     let weight_of = |policy: PolicyId| -> f32 {
         report.blend.terms().iter().filter(|t| t.policy == policy).map(|t| t.weights[0]).sum()
     };

@@ -145,8 +145,11 @@ fn caps(app: &App) -> Vec<Cap> {
         let told = "Rolls forward, from a walk.";
         caps.push(cap(named("B", key(KeyAction::Roll)), "roll", told, pressed(Button::East)));
     }
-    if pack.skill_named("jump").is_some() {
-        let told = "Jumps. A character that runs slows down first.";
+    if let Some(jump) = pack.skill_named("jump") {
+        let told = match pack.skills()[jump.index()].running {
+            Some(_) => "Jumps, out of a run in its stride. One that walks stops first.",
+            None => "Jumps. A character that runs slows down first.",
+        };
         caps.push(cap(named("Y", key(KeyAction::Jump)), "jump", told, pressed(Button::North)));
     }
     if pack.skill_named("punch").is_some() {

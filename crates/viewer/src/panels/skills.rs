@@ -26,12 +26,12 @@ pub(super) fn show(ui: &mut Ui, app: &App, commands: &mut Vec<ViewerCommand>) {
         }
     });
     if let Some(progress) = report.skill {
-        let skill = &pack.skills()[progress.skill.index()];
+        let skill = &pack.skills()[progress.acts.index()];
         let share = progress.seconds / skill.end.limit_seconds.max(1e-3);
         ui.add(ProgressBar::new(share).text(format!("{} {:.1} s", skill.name, progress.seconds)));
         gauge(ui, skill, progress.score, progress.held_seconds);
     }
-    let threshold = report.skill.map(|s| pack.skills()[s.skill.index()].end);
+    let threshold = report.skill.map(|s| pack.skills()[s.acts.index()].end);
     let plot =
         Plot::new("score").height(70.0).include_y(0.0).include_y(1.0).allow_drag(false).allow_zoom(false);
     plot.allow_scroll(false).show_axes([false, true]).show(ui, |plot| {

@@ -95,6 +95,8 @@ pub fn pack_with_skills(threshold: f32) -> CharacterPack {
     let skill = |name: &str, policy: &str, entry: &[&str], discriminator: Option<&str>| SkillEntry {
         minimum_speed_mps: 0.0,
         maximum_speed_mps: None,
+        on_footfall: false,
+        running: None,
         clock_seconds: None,
         name: name.into(),
         policy: policy.into(),

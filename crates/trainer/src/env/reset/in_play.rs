@@ -3,7 +3,7 @@
 
 use glam::Vec2;
 use physics_bridge::Snapshot;
-use policy_core::training::{FrameHistory, Path, TARGET_RANGE_METRES};
+use policy_core::training::{FrameHistory, Path, TARGET_RANGE_METRES, foot_comes_down};
 use policy_core::{Command as GameCommand, Controller, Goal, GraphPosition, PathId, SkillId};
 
 use super::super::command::{Command, DT_SECS};
@@ -86,6 +86,9 @@ const FROM_BEHIND_RADIANS: f32 = 0.4;
 /// Speed of a character that stands, metres per second.
 const STANDS_MPS: f32 = 0.3;
 
+/// Speed of a character that leaps out of a run, at least, metres per second.
+const RUNS_MPS: f32 = 1.5;
+
 /// A start that takes longer is given up, seconds.
 const LIMIT_SECS: f32 = 10.0;
 
@@ -150,6 +153,8 @@ impl Env {
         controller.place_at(GraphPosition::node(stand));
         let strides = config.out_of.strides();
         let (pushes, mut takes_over_at) = (config.out_of == OutOf::Push, None);
+        let runs = config.out_of == OutOf::Run;
+        let skeleton = pack.skeleton();
         let nodes = config.out_of.nodes();
         let out_of = graph.node_named(nodes[self.rng.index(nodes.len())]).unwrap_or(stand);
         let shortest = if strides { STRIDE_SECS } else { 0.3 };
@@ -187,9 +192,9 @@ impl Env {
             if rolling {
                 settled_at = secs + controller.config().settle_secs;
             }
-            let ready = below_mps.is_none_or(|most| {
-                report.position.nearest_node() == stand && root.linear_velocity.truncate().length() < most
-            });
+            let speed = root.linear_velocity.truncate().length();
+            let slow = below_mps.is_none_or(|most| report.position.nearest_node() == stand && speed < most);
+            let ready = slow && (!runs || (speed >= RUNS_MPS && foot_comes_down(skeleton, &self.state)));
             if ready && secs >= settled_at.max(way_secs + rest_secs) {
                 match takes_over_at {
                     None if pushes => {
@@ -208,7 +213,7 @@ impl Env {
             }
             facing = facing.rotate(Vec2::from_angle(looks_round * DT_SECS));
             let ahead = root.position.truncate() + push * TARGET_RANGE_METRES * direction;
-            let on_its_way = secs < way_secs || pushes;
+            let on_its_way = secs < way_secs || pushes || runs;
             let asked = GameCommand {
                 target: ((on_its_way && !halts) || rolling).then_some(ahead),
                 facing: graph.node(out_of).strafes.then_some(facing),

@@ -81,6 +81,21 @@ fn variants_that_stop_or_turn_start_in_the_middle_of_a_stride() {
 }
 
 #[test]
+fn a_skill_out_of_a_run_starts_as_a_foot_comes_down_and_tracks_its_clip() {
+    let mut config = EnvironmentConfig::default();
+    config.reward.tracking_weight = 0.9;
+    let in_play = InPlayConfig { share: 1.0, maximum_speed_mps: None, out_of: OutOf::Run };
+    let mut starts = 0;
+    start_each(config, in_play, |env| {
+        let velocity = env.state.root().linear_velocity.truncate();
+        assert!(velocity.length() >= RUNS_MPS, "{velocity}");
+        assert!(env.tracks() && foot_comes_down(env.character.model().skeleton(), &env.state));
+        starts += 1;
+    });
+    assert!(starts >= 12, "{starts}");
+}
+
+#[test]
 fn a_variant_that_catches_starts_in_the_middle_of_a_push_and_is_to_go_on() {
     let mut config = EnvironmentConfig::default();
     (config.command.speed_mps, config.command.stick_share, config.command.stop_share) = (1.5, 1.0, 0.0);

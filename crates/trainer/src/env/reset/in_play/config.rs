@@ -26,6 +26,9 @@ const STRIDES: [&str; 5] = ["walk", "walk", "jog", "jog", "run"];
 /// Nodes for [`OutOf::Push`].
 const PUSHED: [&str; 5] = ["walk", "jog", "run", "run", "run"];
 
+/// Nodes for [`OutOf::Run`].
+const RUNS: [&str; 3] = ["jog", "jog", "run"];
+
 /// Starts where a game starts an episodic skill, or where a variant begins to act.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -52,6 +55,8 @@ pub enum OutOf {
     Stand,
     /// It walks, jogs or runs, for a variant that turns, or that stops: that one starts as soon as the stick is released.
     Stride,
+    /// It jogs or runs, and a foot comes down, for a skill that starts so.
+    Run,
     /// It walks, jogs or runs, half of the time straight ahead, and is being pushed by up to `randomisation.push_newton`: for a variant that
     /// catches it. It is to go on.
     Push,
@@ -64,12 +69,13 @@ impl OutOf {
             Self::Anything => &OUT_OF,
             Self::Stand => &OUT_OF[..1],
             Self::Stride => &STRIDES,
+            Self::Run => &RUNS,
             Self::Push => &PUSHED,
         }
     }
 
     /// Whether it starts in the middle of a stride.
     pub(super) fn strides(self) -> bool {
-        matches!(self, Self::Stride | Self::Push)
+        matches!(self, Self::Stride | Self::Run | Self::Push)
     }
 }
