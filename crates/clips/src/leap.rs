@@ -30,8 +30,8 @@ pub struct Leap {
     pub seconds: f32,
 }
 
-/// A moment of a leap.
-struct Moment {
+/// A frame of a leap.
+struct Frame {
     /// Seconds of the clip that it is made of.
     source: f32,
     /// What the root is higher, and further ahead, metres.
@@ -71,39 +71,39 @@ impl Clip {
         (clip.times, clip.root_positions, clip.local_rotations) = (Vec::new(), Vec::new(), Vec::new());
         for index in 0..=frames {
             let secs = index as f32 / HZ;
-            let moment = moment_at(secs, leap, whole, speed);
-            let (root, mut rotations) = self.sample(moment.source);
-            if moment.tuck > 0.0 {
-                turn(&mut rotations[lands[0]], -TUCK[0] * moment.tuck);
-                turn(&mut rotations[lands[1]], TUCK[1] * moment.tuck);
-                turn(&mut rotations[pushes[1]], TUCK[2] * moment.tuck);
+            let frame = frame_at(secs, leap, whole, speed);
+            let (root, mut rotations) = self.sample(frame.source);
+            if frame.tuck > 0.0 {
+                turn(&mut rotations[lands[0]], -TUCK[0] * frame.tuck);
+                turn(&mut rotations[lands[1]], TUCK[1] * frame.tuck);
+                turn(&mut rotations[pushes[1]], TUCK[2] * frame.tuck);
             } else {
                 let stands = if secs < from { pushes } else { lands };
-                bend(&mut rotations, stands, -moment.up / leg_metres);
+                bend(&mut rotations, stands, -frame.up / leg_metres);
             }
             clip.times.push(secs);
-            clip.root_positions.push(root + moment.ahead * along + moment.up * Vec3::Z);
+            clip.root_positions.push(root + frame.ahead * along + frame.up * Vec3::Z);
             clip.local_rotations.push(rotations);
         }
         clip.checked()
     }
 }
 
-/// The moment at so many seconds of a leap, made of a clip that lasts `whole` seconds and goes at a speed in metres per second.
-fn moment_at(secs: f32, leap: &Leap, whole: f32, speed: f32) -> Moment {
+/// The frame at so many seconds of a leap, made of a clip that lasts `whole` seconds and goes at a speed in metres per second.
+fn frame_at(secs: f32, leap: &Leap, whole: f32, speed: f32) -> Frame {
     let [from, to] = leap.flight;
     let lands = from + leap.seconds;
     // What it leaves the ground faster than the clip does.
     let rise = 0.5 * GRAVITY * (leap.seconds - (to - from));
     if secs < from {
         let t = secs / from;
-        return Moment { source: secs, up: rise * from * (t * t * t - t * t), ahead: 0.0, tuck: 0.0 };
+        return Frame { source: secs, up: rise * from * (t * t * t - t * t), ahead: 0.0, tuck: 0.0 };
     }
     if secs < lands {
         let t = (secs - from) / leap.seconds;
         let source = from + t * (to - from);
         let height = |t: f32, seconds: f32| 0.5 * GRAVITY * seconds * seconds * t * (1.0 - t);
-        return Moment {
+        return Frame {
             source,
             up: height(t, leap.seconds) - height(t, to - from),
             ahead: speed * (secs - source),
@@ -113,7 +113,7 @@ fn moment_at(secs: f32, leap: &Leap, whole: f32, speed: f32) -> Moment {
     let source = secs - leap.seconds + (to - from);
     let rests = whole - to;
     let t = 1.0 - (source - to) / rests;
-    Moment { source, up: rise * rests * (t * t * t - t * t), ahead: speed * (secs - source), tuck: 0.0 }
+    Frame { source, up: rise * rests * (t * t * t - t * t), ahead: speed * (secs - source), tuck: 0.0 }
 }
 
 /// Turns a limb about its own y axis; a limb ahead has a negative angle.

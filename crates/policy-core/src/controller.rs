@@ -21,7 +21,7 @@ use crate::scorer::Scorer;
 use crate::skill::{SkillEnd, clock_input};
 use crate::state::{CharacterState, JointTargets};
 use crate::strafe::{face_in_observation, strafing_share};
-use crate::variants::{Shares, with_variants};
+use crate::variants::{Shares, standing_share, with_variants};
 
 mod config;
 mod skills;
@@ -276,10 +276,12 @@ impl Controller {
             (None, Some(blend)) => blend,
             (None, None) => {
                 let blend = self.state.fall.acting_position(report.position).blend();
+                let standing = standing_share(self.pack.graph(), &blend);
                 let blend = self.state.capture_step.with_steps(self.pack.graph(), blend);
                 let shares = Shares {
                     catch: self.state.catch.share,
                     rough_ground: self.state.unevenness,
+                    standing,
                     agile: self.state.urgency,
                 };
                 with_variants(self.pack.graph(), blend, shares)

@@ -31,7 +31,8 @@ pub struct Node {
     pub agile: Option<NodeId>,
     /// Variant of the policy that acts once the character stands still, or goes straight, for a while.
     pub steady: Option<NodeId>,
-    /// Variant of a policy that moves: it acts while the character has no target and stays in the gait.
+    /// Variant of a policy that moves: it acts while the character has no target and stays in the gait. That of a policy that stands acts on
+    /// uneven ground, at its node.
     pub resting: Option<NodeId>,
     /// Variant of the policy that acts while the character sets off from a stand, until it is as fast as that variant's speed.
     pub starting: Option<NodeId>,

@@ -65,6 +65,32 @@ fn a_gait_acts_alone_on_level_ground_and_as_its_variant_on_rough_ground() {
 }
 
 #[test]
+fn a_gait_that_stands_rests_on_rough_ground_and_half_way_to_a_walk_its_family_acts() {
+    let mut manifest = common::gaits(|_| {});
+    (manifest.policies[0].rough_ground, manifest.policies[0].resting) =
+        (Some("crawl".into()), Some("roll".into()));
+    let pack = Arc::new(CharacterPack::from_parts(manifest, common::tensors(0.0)).unwrap());
+    let config = ControllerConfig { agility: false, ..ControllerConfig::default() };
+    let shares = |coordinate: f32, state: &CharacterState| {
+        let mut controller = Controller::with_config(pack.clone(), config);
+        let goal = Goal::Path { path: PathId::new(0), coordinate };
+        for _ in 0..90 {
+            controller.tick(state, &Command { goal, ..Command::default() }, DT);
+        }
+        let acted = acted(&controller);
+        ["idle", "crawl", "roll"].map(|name| weight(&acted, policy(name)))
+    };
+    let near = |is: [f32; 3], wanted: [f32; 3]| {
+        assert!(is.iter().zip(wanted).all(|(a, b)| (a - b).abs() < 1e-5), "{is:?} {wanted:?}");
+    };
+    near(shares(0.0, &standing()), [1.0, 0.0, 0.0]);
+    near(shares(0.0, &before_a_step()), [0.0, 0.0, 1.0]);
+    near(shares(0.5, &before_a_step()), [0.0, 0.5, 0.0]);
+    near(shares(0.25, &before_a_step()), [0.0, 0.0, 0.75]);
+    near(shares(0.375, &before_a_step()), [0.0, 0.3125, 0.3125]);
+}
+
+#[test]
 fn on_the_way_over_an_edge_that_is_only_crossed_the_ground_counts_as_level() {
     let roll_shares = |transit: bool| {
         let mut manifest = common::manifest();

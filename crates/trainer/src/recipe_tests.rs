@@ -155,6 +155,10 @@ fn fields_that_do_not_fit_together_are_named() {
     let in_play = "environment.reset.in_play = { share = 0.5, maximum_speed_mps = 0.7 }\n";
     assert!(error(in_play).contains("in_play") && error_together(in_play).contains("in_play"));
     assert!(parse(&format!("{GOOD}{tracking}{in_play}")).is_ok());
+    let runs = "environment.reset.in_play = { share = 0.5, out_of = \"run\" }\n";
+    assert!(error(runs).contains("out_of") && parse(&format!("{GOOD}{tracking}{runs}")).is_ok());
+    let both = "environment.reset.in_play = { share = 0.5, maximum_speed_mps = 0.7, out_of = \"run\" }\n";
+    assert!(error(&format!("{tracking}{both}")).contains("in_play"));
     let let_go = "environment.reset.in_play = { share = 0.5 }\n";
     assert!(parse(&format!("{GOOD}{let_go}")).is_ok());
     let pushed = "environment.reset.in_play = { share = 0.5, out_of = \"push\" }\nenvironment.command.stick_share = 1.0\n";
