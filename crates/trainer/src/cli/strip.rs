@@ -85,8 +85,10 @@ fn episodic_skills(
         let raises = pack.recovery() == Some(SkillId::new(index));
         // One that raises the character has a clip for each side it may lie on.
         for (which, clip) in recipe.clips.iter().take(if raises { 2 } else { 1 }).enumerate() {
-            let states = clip_states(model.described(), &clip.load(clips)?)?;
-            let states = if raises { &states[..] } else { &states[..states.len() / 2] };
+            let loaded = clip.load(clips)?;
+            let states = clip_states(model.described(), &loaded)?;
+            // Of a clip that loops there are two cycles.
+            let states = if loaded.looping && !raises { &states[..states.len() / 2] } else { &states[..] };
             let motion = watch_skill(model, pack, SkillId::new(index), which == 0);
             let name = if raises { clip.name.clone() } else { skill.name.clone() };
             // The whole of a skill on the strip, whatever it takes.
