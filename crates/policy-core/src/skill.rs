@@ -121,6 +121,11 @@ impl SkillProgress {
         Self { skill, acts: skill, seconds: 0.0, held_seconds: 0.0, score: None }
     }
 
+    /// True where what acts is the skill, or what acts in its place in a pack of these skills; both must be among them.
+    pub(crate) fn fits(&self, skills: &[Skill]) -> bool {
+        self.acts == self.skill || skills[self.skill.index()].running == Some(self.acts)
+    }
+
     /// Takes one control tick: the discriminator's score, if there is one, and the root's height above the ground, metres.
     /// Returns why the skill ends, if it does.
     pub fn tick(

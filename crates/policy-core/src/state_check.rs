@@ -69,9 +69,7 @@ impl ControllerState {
         let ended = [r.skill_ended.map(|(s, _)| s)];
         let all = skills.iter().chain(&ended).flatten().all(|s| s.index() < pack.skills().len());
         field("skill", "skills of the pack", all)?;
-        let acts = r
-            .skill
-            .is_none_or(|s| s.acts == s.skill || pack.skills()[s.skill.index()].running == Some(s.acts));
+        let acts = r.skill.is_none_or(|s| s.fits(pack.skills()));
         field("skill that acts", "the skill or what acts in its place out of a run", acts)
     }
 

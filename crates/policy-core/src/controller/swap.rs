@@ -44,8 +44,7 @@ impl Controller {
         state.report.pending_skill = pending;
         state.report.skill = old.skill.and_then(|running| {
             let (named, acts) = (skill(running.skill)?, skill(running.acts)?);
-            let goes_on = acts == named || pack.skills()[named.index()].running == Some(acts);
-            goes_on.then_some(SkillProgress { skill: named, acts, ..running })
+            Some(SkillProgress { skill: named, acts, ..running }).filter(|s| s.fits(pack.skills()))
         });
         state.interrupted = self.state.interrupted.and_then(skill);
         state.pending_secs = self.state.pending_secs;
