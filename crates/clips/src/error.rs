@@ -102,7 +102,7 @@ pub enum ClipError {
     },
     /// A flight does not fit the clip that a leap is made of.
     #[error(
-        "clip {clip}: expected a flight [from, to] with 0 < from < to < {duration} s that is to last longer, at most 2 s; found [{}, {}] and {} s",
+        "clip {clip}: expected a flight [from, to] with 0 < from < to < {duration} s that is to last as long or longer, and less than 2 s; found [{}, {}] and {} s",
         found.flight[0], found.flight[1], found.seconds
     )]
     Leap {

@@ -46,7 +46,7 @@ impl Clip {
     /// before and after bends as far as the body dips to push off and to land.
     ///
     /// # Errors
-    /// When the flight does not lie within the clip, or does not become longer, or the clip lacks a thigh, shin or foot: bodies of
+    /// When the flight does not lie within the clip, or would become shorter or last for 2 s, or the clip lacks a thigh, shin or foot: bodies of
     /// names such as `left_thigh`.
     pub fn leap(&self, leap: &Leap) -> Result<Self, ClipError> {
         let [from, to] = leap.flight;
@@ -56,9 +56,7 @@ impl Clip {
             return Err(ClipError::Leap { clip: self.name.clone(), duration: whole, found: *leap });
         }
         let legs = [self.leg("left")?, self.leg("right")?];
-        let longer = leap.seconds - (to - from);
-        let last = whole + longer;
-        let frames = (last * HZ).floor() as usize;
+        let frames = ((whole + (leap.seconds - (to - from))) * HZ).floor() as usize;
         let travels = (self.root_positions[self.times.len() - 1] - self.root_positions[0]).truncate();
         let along = travels.normalize_or_zero().extend(0.0);
         let speed = travels.length() / whole;
