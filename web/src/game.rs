@@ -215,7 +215,7 @@ impl Game {
                 if at.t < 0.05 || from == to { from.clone() } else { format!("{from} to {to}") }
             }
         };
-        let speed = player.state.root().linear_velocity.truncate().length();
+        let speed = player.state.horizontal_speed();
         format!("{} at {speed:.1} m/s", what.replace('_', " "))
     }
 }

@@ -1,6 +1,7 @@
 //! A leap, made by rule of a running clip: one of its flights lasts longer, so the body pushes off harder, rises, and lands softly.
 
 use std::f32::consts::PI;
+use std::sync::Arc;
 
 use glam::{Quat, Vec3};
 use serde::{Deserialize, Serialize};
@@ -65,8 +66,7 @@ impl Clip {
         let ahead = |leg: [usize; 3]| (at_take_off[0] * at_take_off[leg[0]] * Vec3::NEG_Z).dot(along);
         let [lands, pushes] = if ahead(legs[0]) > ahead(legs[1]) { legs } else { [legs[1], legs[0]] };
         let leg_metres = LEG_SHARE * self.root_positions[0].z;
-        let mut clip = Self { name: format!("{} (leap)", self.name), looping: false, ..self.clone() };
-        (clip.times, clip.root_positions, clip.local_rotations) = (Vec::new(), Vec::new(), Vec::new());
+        let (mut times, mut root_positions, mut local_rotations) = (Vec::new(), Vec::new(), Vec::new());
         for index in 0..=frames {
             let secs = index as f32 / HZ;
             let frame = frame_at(secs, leap, whole, speed);
@@ -79,11 +79,20 @@ impl Clip {
                 let stands = if secs < from { pushes } else { lands };
                 bend(&mut rotations, stands, -frame.up / leg_metres);
             }
-            clip.times.push(secs);
-            clip.root_positions.push(root + frame.ahead * along + frame.up * Vec3::Z);
-            clip.local_rotations.push(rotations);
+            times.push(secs);
+            root_positions.push(root + frame.ahead * along + frame.up * Vec3::Z);
+            local_rotations.push(rotations);
         }
-        clip.checked()
+        let name = format!("{} (leap)", self.name);
+        Self {
+            name,
+            looping: false,
+            times,
+            bodies: Arc::clone(&self.bodies),
+            root_positions,
+            local_rotations,
+        }
+        .checked()
     }
 }
 

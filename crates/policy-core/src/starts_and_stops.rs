@@ -69,7 +69,7 @@ pub(crate) fn next_stop(
     dt: f32,
 ) -> Lasting {
     let can_stop = place.all_have(|node| node.stopping);
-    let speed = state.root().linear_velocity.truncate().length();
+    let speed = state.horizontal_speed();
     let left = (stop.secs - dt).max(0.0);
     let secs = match target {
         _ if !can_stop => 0.0,

@@ -107,6 +107,15 @@ impl CharacterState {
         self.root().position.z - self.ground_height
     }
 
+    /// Horizontal speed of the root, metres per second.
+    ///
+    /// # Panics
+    /// When the state has no body.
+    #[must_use]
+    pub fn horizontal_speed(&self) -> f32 {
+        self.root().linear_velocity.truncate().length()
+    }
+
     /// True when it has the bodies and hinges of `skeleton`.
     #[must_use]
     pub fn fits(&self, skeleton: &Skeleton) -> bool {

@@ -10,7 +10,7 @@ use common::{project, small, write_clip};
 use physics_bridge::Model;
 use policy_core::{Arithmetic, CharacterPack, MlpScratch};
 use trainer::checkpoint::Checkpoint;
-use trainer::env::Normalisers;
+use trainer::env::{Normalisers, OutOf, RUNS_MPS};
 use trainer::nn::{Network, Pass};
 use trainer::pack::{PackPlan, PlannedPolicy, TrainedSkill, bind};
 use trainer::recipe::Recipe;
@@ -128,6 +128,8 @@ fn a_timed_skill_has_the_clock_of_its_recipe() {
                 "{} starts faster than it learned",
                 skill.name
             );
+            let runs = phase.environment.reset.in_play.is_some_and(|start| start.out_of == OutOf::Run);
+            assert!(!runs || skill.minimum_speed_mps == RUNS_MPS, "{}", skill.name);
         }
         timed += usize::from(skill.clock_seconds.is_some());
     }

@@ -70,10 +70,6 @@ pub(super) fn way_out(
     (still || before == lowest).then_some(lowest)
 }
 
-fn horizontal_speed(state: &CharacterState) -> f32 {
-    state.root().linear_velocity.truncate().length()
-}
-
 impl Controller {
     /// Runs the skill that is on for a tick, and ends it when it has come to its end.
     pub(super) fn run_skill(&mut self, state: &CharacterState, heights: Heights, dt: f32) {
@@ -102,7 +98,7 @@ impl Controller {
     /// Starts the recovery skill of a character that lies. Another one that was pending is refused.
     fn recover(&mut self, recovery: SkillId) {
         let pending = self.state.report.pending_skill.filter(|pending| *pending != recovery);
-        self.start_skill(recovery, recovery);
+        self.start_skill(SkillProgress::start(recovery));
         if let Some(pending) = pending {
             self.state.report.skill_refused = Some((pending, Refusal::Fell));
         }
@@ -149,7 +145,7 @@ impl Controller {
         }
         let acts = self.acting(pending, state);
         let skill = &self.pack.skills()[acts.index()];
-        let speed = horizontal_speed(state);
+        let speed = state.horizontal_speed();
         let [least, most] = [skill.minimum_speed_mps, skill.maximum_speed_mps];
         let stands =
             || self.state.pending_secs > LONGEST_UNBALANCED_SECS || is_balanced(self.pack.skeleton(), state);
@@ -159,7 +155,7 @@ impl Controller {
         let in_step = !skill.on_footfall
             || (self.state.settle_secs == 0.0 && foot_comes_down(self.pack.skeleton(), state));
         if in_range && in_step && skill.starts_from(self.state.report.position.nearest_node()) {
-            return self.start_skill(pending, acts);
+            return self.start_skill(SkillProgress { acts, ..SkillProgress::start(pending) });
         }
         self.state.pending_secs += dt;
         if self.state.pending_secs > LONGEST_PENDING_SECS {
@@ -183,7 +179,7 @@ impl Controller {
         let node = self.state.report.position.nearest_node();
         let fits = |running: &SkillId| {
             let running = &skills[running.index()];
-            running.starts_from(node) && horizontal_speed(state) >= running.minimum_speed_mps
+            running.starts_from(node) && state.horizontal_speed() >= running.minimum_speed_mps
         };
         skills[skill.index()].running.filter(fits).unwrap_or(skill)
     }
@@ -212,14 +208,13 @@ impl Controller {
         (up && self.pack.recovery() == Some(skill)).then_some(Refusal::Upright)
     }
 
-    /// Starts a skill in place of whatever runs; `acts` is the skill, or what acts in its place.
-    pub(super) fn start_skill(&mut self, skill: SkillId, acts: SkillId) {
+    /// Starts a skill in place of whatever runs.
+    pub(super) fn start_skill(&mut self, progress: SkillProgress) {
         let report = &mut self.state.report;
-        let progress = SkillProgress { acts, ..SkillProgress::start(skill) };
         if let Some(running) = report.skill.replace(progress) {
             report.skill_ended = Some((running.skill, SkillEnd::Interrupted));
         }
-        (report.skill_started, report.pending_skill) = (Some(skill), None);
+        (report.skill_started, report.pending_skill) = (Some(progress.skill), None);
         report.fallen = false;
         self.state.fall.reset();
         self.state.history.clear();

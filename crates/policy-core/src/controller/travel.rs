@@ -13,6 +13,7 @@ use crate::give_way::GiveWayState;
 use crate::ids::NodeId;
 use crate::path::GraphPosition;
 use crate::report::TickReport;
+use crate::skill::SkillProgress;
 use crate::state::CharacterState;
 use crate::steering::SteeringState;
 use crate::strafe::waits_before_leaving;
@@ -70,7 +71,7 @@ impl Controller {
             (self.config.assist_rise, self.state.fall.rising_seconds() > ASSIST_SECONDS, self.pack.recovery())
         {
             let (rising, pending) = (self.state.fall.rising_seconds, self.state.report.pending_skill);
-            self.start_skill(recovery, recovery);
+            self.start_skill(SkillProgress::start(recovery));
             self.state.fall.rising_seconds = rising;
             // The character rises for it.
             self.state.report.pending_skill = pending;

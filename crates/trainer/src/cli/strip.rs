@@ -88,7 +88,7 @@ fn episodic_skills(
             let loaded = clip.load(clips)?;
             let states = clip_states(model.described(), &loaded)?;
             // Of a clip that loops there are two cycles.
-            let states = if loaded.looping && !raises { &states[..states.len() / 2] } else { &states[..] };
+            let states = if loaded.looping { &states[..states.len() / 2] } else { &states[..] };
             let motion = watch_skill(model, pack, SkillId::new(index), which == 0);
             let name = if raises { clip.name.clone() } else { skill.name.clone() };
             // The whole of a skill on the strip, whatever it takes.

@@ -36,7 +36,7 @@ pub use mirrored::{MirrorError, mirror_of};
 pub use normalisers::Normalisers;
 pub use randomisation::RandomisationConfig;
 pub(crate) use reset::PLAYED;
-pub use reset::{HandOver, HandOverConfig, InPlayConfig, OutOf, ResetConfig};
+pub use reset::{HandOver, HandOverConfig, InPlayConfig, OutOf, RUNS_MPS, ResetConfig};
 pub use reward::{
     Pace, RewardConfig, RewardTerms, Task, foot_slip_mps, paid_velocity, standing_reward, target_reward,
 };

@@ -21,7 +21,7 @@ mod pre_failure;
 pub use self::hand_over::HandOver;
 pub(crate) use self::in_play::PLAYED;
 pub(super) use self::in_play::PlayedStarts;
-pub use self::in_play::{InPlayConfig, OutOf};
+pub use self::in_play::{InPlayConfig, OutOf, RUNS_MPS};
 pub(super) use self::pre_failure::PreFailureStates;
 
 /// Where episodes start.

@@ -59,6 +59,9 @@ pub struct RewardConfig {
     pub fall_cost: f32,
     /// Foot-slip penalty each tick, for 1 m/s of feet that bear all the weight; where the character should be upright.
     pub foot_slip_cost: f32,
+    /// Most that the feet slip in a tick, in units of [`Self::foot_slip_cost`]. A foot of a run lands with up to three times the weight at 1 m/s;
+    /// beyond the most, a faster landing costs no more.
+    pub foot_slip_most_mps: f32,
     /// Height of a standing character's root above the ground, metres; for [`Task::Stand`].
     pub standing_root_metres: f32,
     /// Height of a standing character's head above the ground, metres; for [`Task::Stand`].
@@ -84,6 +87,7 @@ impl Default for RewardConfig {
             tracking_share: 0.0,
             fall_cost: 0.0,
             foot_slip_cost: 0.0,
+            foot_slip_most_mps: 1.0,
             standing_root_metres: 0.83,
             standing_head_metres: 1.25,
         }
@@ -118,7 +122,7 @@ impl RewardTerms {
 }
 
 /// How fast the feet slip over what they stand on, metres per second, weighted by the share of the character's weight that
-/// presses there; at most 1.
+/// presses there.
 #[must_use]
 pub fn foot_slip_mps(
     feet: &[BodyId],
@@ -136,7 +140,7 @@ pub fn foot_slip_mps(
             along.length() * contact.force.dot(contact.normal).max(0.0)
         })
         .sum();
-    (sum / weight_newton).min(1.0)
+    sum / weight_newton
 }
 
 /// Speed that a target should be approached with, at a position on the graph.
@@ -230,7 +234,7 @@ pub fn standing_reward(config: &RewardConfig, skeleton: &Skeleton, state: &Chara
         .map_or(root, |head| (state.height_of(head) / config.standing_head_metres).clamp(0.0, 1.0));
     let trunk = skeleton.head().and_then(|head| skeleton.parent(head)).unwrap_or(skeleton.root());
     let up = (state.body(trunk).rotation * Vec3::Z).z.max(0.0);
-    let speed = state.root().linear_velocity.truncate().length();
+    let speed = state.horizontal_speed();
     let height = 0.5 * (root + head);
     let still = if height > 0.9 { (-speed * speed).exp() } else { 0.0 };
     // Standing up faster than at ease pays little.

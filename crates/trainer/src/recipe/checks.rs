@@ -180,7 +180,7 @@ impl Recipe {
                 reset.in_play.is_none_or(|in_play| {
                     let stands = in_play.maximum_speed_mps.is_some();
                     let runs = in_play.out_of == OutOf::Run;
-                    !together && u8::from(stands) + u8::from(runs) == u8::from(tracks)
+                    !together && if tracks { stands != runs } else { !stands && !runs }
                 }),
                 "environment.reset.in_play",
                 "none beside paths; with a tracking_weight one with a maximum_speed_mps or an out_of of \"run\", and without a tracking_weight one without either",

@@ -59,6 +59,7 @@ const RANGES: &[(&str, f64, f64)] = &[
     ("environment.reward.tracking_share", 0.0, 1.0),
     ("environment.reward.fall_cost", 0.0, 1e4),
     ("environment.reward.foot_slip_cost", 0.0, 100.0),
+    ("environment.reward.foot_slip_most_mps", 0.1, 10.0),
     ("environment.reward.standing_root_metres", 0.01, 100.0),
     ("environment.reward.standing_head_metres", 0.01, 100.0),
     ("environment.termination.height_factor", 0.0, 2.0),

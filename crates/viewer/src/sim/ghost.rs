@@ -72,7 +72,7 @@ impl Ghost {
     /// Horizontal speed of its root body, metres per second.
     #[must_use]
     pub fn speed(&self) -> f32 {
-        self.state.root().linear_velocity.truncate().length()
+        self.state.horizontal_speed()
     }
 
     /// True while it lies, gets up, or has diverged.

@@ -91,7 +91,7 @@ impl SteeredCharacter {
     /// Horizontal speed of the root body, metres per second.
     #[must_use]
     pub fn speed(&self) -> f32 {
-        self.state.root().linear_velocity.truncate().length()
+        self.state.horizontal_speed()
     }
 
     /// True from a fall until it is on its feet again.

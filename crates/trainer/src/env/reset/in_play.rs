@@ -86,8 +86,8 @@ const FROM_BEHIND_RADIANS: f32 = 0.4;
 /// Speed of a character that stands, metres per second.
 const STANDS_MPS: f32 = 0.3;
 
-/// Speed of a character that leaps out of a run, at least, metres per second.
-const RUNS_MPS: f32 = 1.5;
+/// Speed of a character that starts out of a run, at least, metres per second: the least that the pack lets it leap at.
+pub const RUNS_MPS: f32 = 1.5;
 
 /// A start that takes longer is given up, seconds.
 const LIMIT_SECS: f32 = 10.0;
@@ -192,7 +192,7 @@ impl Env {
             if rolling {
                 settled_at = secs + controller.config().settle_secs;
             }
-            let speed = root.linear_velocity.truncate().length();
+            let speed = self.state.horizontal_speed();
             let slow = below_mps.is_none_or(|most| report.position.nearest_node() == stand && speed < most);
             let ready = slow && (!runs || (speed >= RUNS_MPS && foot_comes_down(skeleton, &self.state)));
             if ready && secs >= settled_at.max(way_secs + rest_secs) {

@@ -20,7 +20,7 @@ fn starts_of(speed_mps: f32, in_play: InPlayConfig, tracking_weight: f32) -> (Ve
     (config.reward.tracking_weight, config.command.speed_mps) = (tracking_weight, speed_mps);
     let (mut speeds, mut tracking) = (Vec::new(), 0);
     start_each(config, in_play, |env| {
-        speeds.push(env.state.root().linear_velocity.truncate().length());
+        speeds.push(env.state.horizontal_speed());
         tracking += usize::from(env.tracks());
     });
     (speeds, tracking)
