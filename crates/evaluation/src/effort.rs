@@ -7,7 +7,7 @@ use super::encounters::{RACE_SECS, nominal_secs};
 use super::player::STRAIGHT_COORDINATES;
 use super::press::bound_buttons;
 use super::response::{STOP_SECS, WAYS};
-use super::stress::{CASE_COUNT, GET_UP_SECS, GROUND_COUNT, PadKind, nominal_trials};
+use super::stress::{CASE_COUNT, GET_UP_SECS, Grounds, PadKind, nominal_trials};
 use super::trial::Gaits;
 
 /// How much is measured.
@@ -53,6 +53,8 @@ pub struct Effort {
     pub races: usize,
     /// The gaits in which a measure by gait is taken.
     pub gaits: Gaits,
+    /// The uneven grounds on which characters roam and get up.
+    pub grounds: Grounds,
 }
 
 impl Effort {
@@ -78,6 +80,7 @@ impl Effort {
         encounters: 48,
         races: 10,
         gaits: Gaits::ALL,
+        grounds: Grounds::ALL,
     };
 
     /// Less than three minutes on two idle cores, for a first look.
@@ -102,6 +105,7 @@ impl Effort {
         encounters: 4,
         races: 1,
         gaits: Gaits::ALL,
+        grounds: Grounds::ALL,
     };
 
     /// The same with so many characters in every measure, and as many tries of each encounter; drops, seconds and runs over the course
@@ -153,8 +157,8 @@ impl Effort {
             Section::Jumps => of(self.settled * pack.skills().len(), 4.0),
             Section::Legs => of(gaits * self.settled, 8.0),
             Section::RandomPad => of(PadKind::ALL.len() * self.pad_players, self.pad_secs),
-            Section::Terrain => roamed * GROUND_COUNT as f32,
-            Section::GetUp => of(GROUND_COUNT * self.drops_uneven, GET_UP_SECS),
+            Section::Terrain => roamed * self.grounds.count() as f32,
+            Section::GetUp => of(self.grounds.count() * self.drops_uneven, GET_UP_SECS),
             Section::Robustness => roamed * CASE_COUNT as f32,
             Section::Encounters => nominal_secs(self),
             Section::Race => of(self.races, RACE_SECS),

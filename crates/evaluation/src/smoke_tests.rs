@@ -13,6 +13,7 @@ use policy_core::training::{Layer, Normaliser, PackTensors};
 use policy_core::{CharacterPack, ControllerConfig, Mlp, Skeleton};
 use random::Rng;
 
+use super::stress::Grounds;
 use super::trial::Gaits;
 use super::{Effort, EvalCharacter, Evaluation, PlayerReport, Progress, Section, evaluate, table};
 
@@ -166,6 +167,17 @@ fn some_gaits_are_measured_as_with_all_of_them_and_others_are_not() {
     assert!(some.foot_slide_mps.keys().eq(["crawl", "walk"]), "{:?}", some.foot_slide_mps.keys());
     assert_eq!(some.response.turns["walk"], all.response.turns["walk"]);
     assert_eq!(some.response.stop["crawl"], all.response.stop["crawl"]);
+}
+
+#[test]
+fn some_grounds_are_measured_as_with_all_of_them_and_others_are_not() {
+    let effort = Effort { grounds: Grounds::from_name("steps_5cm").unwrap(), ..TINY };
+    let sections = [Section::Terrain];
+    let some = measured(Engine::Mujoco, false, &effort, &sections).player;
+    let all = measured(Engine::Mujoco, false, &TINY, &sections).player;
+    assert!(some.terrain.keys().eq(["steps_5cm"]), "{:?}", some.terrain.keys());
+    assert_eq!(some.terrain["steps_5cm"], all.terrain["steps_5cm"]);
+    assert_eq!(all.terrain.len(), 4);
 }
 
 #[test]

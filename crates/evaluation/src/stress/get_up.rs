@@ -9,7 +9,6 @@ use random::Rng;
 use random::limp::drop_limp;
 use serde::{Deserialize, Serialize};
 
-use super::terrain::GROUNDS;
 use crate::Rig;
 use crate::trial::{Gait, TICK_SECS, Trial, median, ticks};
 
@@ -55,7 +54,7 @@ pub fn measure_get_up_on_terrain(rig: &Rig<'_>) -> Result<BTreeMap<String, GetUp
         return Ok(grounds);
     };
     let seeds: Vec<u64> = (0..rig.effort.drops_uneven as u64).collect();
-    for (name, terrain) in GROUNDS {
+    for (name, terrain) in rig.effort.grounds.terrains() {
         let model = rig.model.with_terrain(terrain)?;
         let tries = rig.each(&seeds, NOMINAL_SECS, |seed| get_up(rig, &model, &idle, skill, *seed));
         grounds.insert(name.into(), GetUpReport::of(&tries));

@@ -12,12 +12,56 @@ use crate::Rig;
 const SEED: u32 = 7;
 
 /// Grounds and their names. Slopes are long hills of 7 degrees in the root mean square.
-pub(super) const GROUNDS: [(&str, Terrain); 4] = [
+const GROUNDS: [(&str, Terrain); 4] = [
     ("hills_35cm", Terrain::Wavy { height_m: 0.35, wavelength_m: 6.0, seed: SEED }),
     ("slopes_7deg", Terrain::Wavy { height_m: 1.92, wavelength_m: 20.0, seed: SEED }),
     ("steps_5cm", Terrain::Steps { rise_m: 0.05, run_m: 0.8, count: 6 }),
     ("steps_10cm", Terrain::Steps { rise_m: 0.10, run_m: 0.8, count: 6 }),
 ];
+
+/// Some of the uneven grounds.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Grounds(u8);
+
+impl Grounds {
+    /// None of them.
+    pub const NONE: Grounds = Grounds(0);
+    /// All of them.
+    pub const ALL: Grounds = Grounds((1 << GROUNDS.len()) - 1);
+
+    /// The names of all grounds.
+    #[must_use]
+    pub fn names() -> [&'static str; GROUNDS.len()] {
+        GROUNDS.map(|(name, _)| name)
+    }
+
+    /// The ground called `name` alone; `None` when there is none of that name.
+    #[must_use]
+    pub fn from_name(name: &str) -> Option<Grounds> {
+        Grounds::names().iter().position(|known| *known == name).map(|index| Grounds(1 << index))
+    }
+
+    /// The grounds of either.
+    #[must_use]
+    pub const fn and(self, other: Grounds) -> Grounds {
+        Grounds(self.0 | other.0)
+    }
+
+    /// How many there are.
+    #[must_use]
+    pub const fn count(self) -> usize {
+        self.0.count_ones() as usize
+    }
+
+    /// Names and terrains.
+    pub(super) fn terrains(self) -> impl Iterator<Item = (&'static str, Terrain)> {
+        GROUNDS
+            .into_iter()
+            .enumerate()
+            .filter(move |(index, _)| self.0 >> index & 1 == 1)
+            .map(|(_, ground)| ground)
+    }
+}
 
 /// Falls by ground, and in it by gait.
 ///
@@ -27,7 +71,7 @@ pub fn measure_terrain(rig: &Rig<'_>) -> Result<BTreeMap<String, BTreeMap<String
     let seeds: Vec<u64> = (0..rig.effort.roamers as u64).collect();
     let secs = rig.effort.roam_secs;
     let mut grounds = BTreeMap::new();
-    for (name, terrain) in GROUNDS {
+    for (name, terrain) in rig.effort.grounds.terrains() {
         let model = rig.model.with_terrain(terrain)?;
         let measure = |gait: &_| {
             rig.each(&seeds, secs, |seed| roam(rig, &model, gait, |none, _, _| none, (secs, *seed)))
@@ -38,9 +82,6 @@ pub fn measure_terrain(rig: &Rig<'_>) -> Result<BTreeMap<String, BTreeMap<String
     }
     Ok(grounds)
 }
-
-/// Trials for one gait.
-pub(crate) const GROUND_COUNT: usize = GROUNDS.len();
 
 #[cfg(test)]
 mod tests {

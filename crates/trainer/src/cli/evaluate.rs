@@ -8,6 +8,7 @@ use std::sync::Arc;
 use anyhow::{Context, Result};
 use clap::Args;
 use clips::ClipFolder;
+use evaluation::stress::Grounds;
 use evaluation::trial::Gaits;
 use evaluation::{Effort, Evaluation, PlayerReport, Progress, Section, clip_states, evaluate, plots, table};
 use files::write_atomically;
@@ -25,7 +26,7 @@ pub(crate) struct Arguments {
     #[arg(required_unless_present = "from")]
     pack: Option<PathBuf>,
     /// Print and draw what an earlier run has written to this file, and measure nothing.
-    #[arg(long, conflicts_with_all = ["pack", "json", "quick", "only", "gaits", "physics", "characters"])]
+    #[arg(long, conflicts_with_all = ["pack", "json", "quick", "only", "gaits", "grounds", "physics", "characters"])]
     from: Option<PathBuf>,
     /// File to write the measures to.
     #[arg(long)]
@@ -43,6 +44,10 @@ pub(crate) struct Arguments {
     /// all of them.
     #[arg(long, value_delimiter = ',', value_parser = gait)]
     gaits: Vec<Gaits>,
+    /// Measure terrain and get_up on these grounds alone, comma-separated; an unknown name lists them. Figures are the same as with all of
+    /// them.
+    #[arg(long, value_delimiter = ',', value_parser = ground)]
+    grounds: Vec<Grounds>,
     /// Physics engine: mujoco or rapier. Rapier skips the sections encounters and race.
     #[arg(long, default_value = "mujoco", value_parser = engine)]
     physics: Engine,
@@ -92,6 +97,11 @@ fn gait(name: &str) -> Result<Gaits, String> {
     Gaits::from_name(name).ok_or_else(|| format!("expected one of {}", Gaits::names().join(", ")))
 }
 
+/// The ground of a name.
+fn ground(name: &str) -> Result<Grounds, String> {
+    Grounds::from_name(name).ok_or_else(|| format!("expected one of {}", Grounds::names().join(", ")))
+}
+
 /// The engine of a name.
 fn engine(name: &str) -> Result<Engine, String> {
     let names = || Engine::ALL.map(Engine::name).join(" or ");
@@ -118,7 +128,9 @@ pub(crate) fn run(
     let effort = if arguments.quick { Effort::QUICK } else { Effort::FULL };
     let effort = arguments.characters.map_or(effort, |count| effort.with_characters(count.into()));
     let some = arguments.gaits.iter().copied().reduce(Gaits::and);
-    let effort = Effort { gaits: some.unwrap_or(effort.gaits), ..effort };
+    let grounds = arguments.grounds.iter().copied().reduce(Grounds::and);
+    let effort =
+        Effort { gaits: some.unwrap_or(effort.gaits), grounds: grounds.unwrap_or(effort.grounds), ..effort };
     let sections: &[Section] = if arguments.only.is_empty() { &Section::ALL } else { &arguments.only };
     let states = match clips.filter(|_| sections.contains(&Section::Motion)) {
         Some(clips) => states_of_clips(model, recipes, clips, &pack)?,
