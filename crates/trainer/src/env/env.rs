@@ -248,8 +248,14 @@ impl Env {
             return terms;
         }
         let weight = self.character.model().mass_kg() as f32 * GRAVITY;
-        let foot_slip_mps = foot_slip_mps(context.skeleton.feet(), &self.state, self.contacts(), weight);
-        RewardTerms { foot_slip_mps: foot_slip_mps.min(config.foot_slip_most_mps), ..terms }
+        let foot_slip_mps = foot_slip_mps(
+            context.skeleton.feet(),
+            &self.state,
+            self.contacts(),
+            weight,
+            config.foot_slip_most_mps,
+        );
+        RewardTerms { foot_slip_mps, ..terms }
     }
 
     /// Renews target and position on the graph, after the tick's reward.

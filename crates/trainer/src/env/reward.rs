@@ -122,13 +122,14 @@ impl RewardTerms {
 }
 
 /// How fast the feet slip over what they stand on, metres per second, weighted by the share of the character's weight that
-/// presses there.
+/// presses there; at most `most_mps`.
 #[must_use]
 pub fn foot_slip_mps(
     feet: &[BodyId],
     state: &CharacterState,
     contacts: &[Contact],
     weight_newton: f32,
+    most_mps: f32,
 ) -> f32 {
     let feet = contacts.iter().filter(|contact| feet.contains(&contact.body));
     let sum: f32 = feet
@@ -140,7 +141,7 @@ pub fn foot_slip_mps(
             along.length() * contact.force.dot(contact.normal).max(0.0)
         })
         .sum();
-    sum / weight_newton
+    (sum / weight_newton).min(most_mps)
 }
 
 /// Speed that a target should be approached with, at a position on the graph.

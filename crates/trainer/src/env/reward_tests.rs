@@ -116,12 +116,18 @@ fn a_foot_that_slips_under_the_weight_costs_and_one_that_rolls_or_swings_does_no
         depth: 0.0,
     };
     let both = [touch(body("left_foot"), 240.0), touch(body("left_hand"), 240.0)];
-    assert!((foot_slip_mps(Skeleton::humanoid().feet(), &state, &both, 480.0) - 0.25).abs() < 1e-6);
-    assert_eq!(foot_slip_mps(Skeleton::humanoid().feet(), &state, &[], 480.0), 0.0);
+    assert!((foot_slip_mps(Skeleton::humanoid().feet(), &state, &both, 480.0, 1.0) - 0.25).abs() < 1e-6);
+    assert_eq!(foot_slip_mps(Skeleton::humanoid().feet(), &state, &[], 480.0, 1.0), 0.0);
+    // A foot that lands with three times the weight costs more than the limit.
+    let lands = [touch(body("left_foot"), 3.0 * 480.0)];
+    for (most, expected) in [(1.0, 1.0), (4.0, 1.5)] {
+        let slip = foot_slip_mps(Skeleton::humanoid().feet(), &state, &lands, 480.0, most);
+        assert!((slip - expected).abs() < 1e-6, "{slip}");
+    }
     // The point that touches rests while the foot turns about it.
     let foot = &mut state.bodies[body("left_foot").index()];
     (foot.linear_velocity, foot.angular_velocity) = (Vec3::new(0.4, 0.0, 0.0), Vec3::new(0.0, 8.0, 0.0));
-    assert!(foot_slip_mps(Skeleton::humanoid().feet(), &state, &both, 480.0) < 1e-6);
+    assert!(foot_slip_mps(Skeleton::humanoid().feet(), &state, &both, 480.0, 1.0) < 1e-6);
 }
 
 #[test]
