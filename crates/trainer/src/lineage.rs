@@ -8,6 +8,8 @@ use serde::{Deserialize, Serialize};
 use files::quoted;
 use files::read_text_bounded;
 
+use crate::average::Averaging;
+
 mod execute;
 
 /// File in a run's folder that says which step of a lineage made it.
@@ -74,7 +76,7 @@ pub struct TrainStep {
     pub seed: Option<u64>,
 }
 
-/// A mean of policies.
+/// A mean of policies, as [`Averaging`] has it.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct AverageStep {
@@ -82,9 +84,22 @@ pub struct AverageStep {
     pub run: String,
     /// Runs to average; all but the policies comes from the first one.
     pub of: Vec<String>,
+    /// Weight of each run, adding up to 1; equal ones by default.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub weights: Vec<f64>,
     /// Skills whose policies stay as they are in the first one.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub except: Vec<String>,
+    /// Skill whose policy a run gives that trained several skills together, where the first one trained a skill alone.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub policy: Option<String>,
+}
+
+impl AverageStep {
+    fn averaging(&self) -> Averaging {
+        let Self { weights, except, policy, .. } = self.clone();
+        Averaging { weights, except, policy }
+    }
 }
 
 /// Why a lineage can't be used.
@@ -115,7 +130,7 @@ pub enum LineageError {
         /// Index of the step.
         step: usize,
         /// What it should say.
-        expected: &'static str,
+        expected: String,
         /// What it says.
         found: String,
     },
@@ -161,8 +176,8 @@ impl Lineage {
             message: quoted(&e.to_string()),
         };
         let lineage: Self = toml::from_str(text).map_err(toml)?;
-        let wrong = |step, expected, found: String| {
-            let found = quoted(&found);
+        let wrong = |step, expected: &str, found: String| {
+            let (expected, found) = (expected.to_owned(), quoted(&found));
             LineageError::Step { path: path.to_owned(), step, expected, found }
         };
         if lineage.steps.len() > MOST_STEPS {
@@ -193,8 +208,10 @@ impl Lineage {
                 Step::Train(TrainStep { samples: Some(0), .. }) => {
                     return Err(wrong(index, "at least one sample", "0".into()));
                 }
-                Step::Average(average) if average.of.len() < 2 => {
-                    return Err(wrong(index, "at least two runs to average", format!("{:?}", average.of)));
+                Step::Average(average) => {
+                    if let Err([expected, found]) = average.averaging().check(average.of.len()) {
+                        return Err(wrong(index, &expected, found));
+                    }
                 }
                 _ => {}
             }

@@ -16,6 +16,11 @@ fn steps_read_what_earlier_steps_make() {
     assert!(said("{ average = { run = \"mean\", of = [\"walk\", \"more\"] } }").contains("steps[0]"));
     assert!(said(&good.replacen("run = \"more\"", "run = \"walk\"", 1)).contains("no other step"));
     assert!(said(&good.replace("[\"walk\", \"more\"]", "[\"walk\"]")).contains("at least two"));
+    let weighed = |weights: &str| {
+        good.replace("of = [\"walk\", \"more\"]", &format!("of = [\"walk\", \"more\"], {weights}"))
+    };
+    assert!(parse(&weighed("weights = [1.2, -0.2], policy = \"walk\"")).is_ok());
+    assert!(said(&weighed("weights = [1.2]")).contains("2 weights that add up to 1"));
     assert!(said(&good.replace("continues", "from = \"walk\", continues")).contains("both"));
     assert!(said(&good.replace("continues", "from_samples = 5, continues")).contains("beside"));
     assert!(said("{ train = { recipe = \"../x\" } }").contains("lower-case"));
