@@ -19,7 +19,7 @@ pub(crate) struct Arguments {
     #[arg(long)]
     out: PathBuf,
     /// Weight of each checkpoint, adding up to 1; equal ones by default. One below zero leads away from that checkpoint.
-    #[arg(long, value_delimiter = ',', allow_negative_numbers = true)]
+    #[arg(long, value_delimiter = ',', allow_hyphen_values = true)]
     weights: Vec<f64>,
     /// Skills, of those trained together, whose policies stay as they are in the first checkpoint.
     #[arg(long, value_delimiter = ',')]

@@ -36,6 +36,7 @@ pub(crate) const PLAYED: &[&str] = &[
     "walk_start",
     "walk_turn",
     "walk_catch",
+    "run_catch",
     "idle_stop",
     "roll",
 ];
