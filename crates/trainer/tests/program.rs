@@ -205,6 +205,22 @@ fn a_lineage_averages_kept_checkpoints() {
 }
 
 #[test]
+fn an_average_with_weights_goes_beyond_what_was_learned() {
+    let place = ScratchFolder::new();
+    let checkpoints = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../assets/checkpoints");
+    let [gait, rough] =
+        ["strafe", "strafe_rough"].map(|name| checkpoints.join(format!("{name}.safetensors")));
+    let out = place.path("mean.safetensors");
+    let [gait, rough, out] = [&gait, &rough, &out].map(|path| path.to_str().unwrap());
+    let average = |weights: &str| place.run(&["average", gait, rough, "--out", out, "--weights", weights]);
+    assert!(average("-0.15,1.15").status.success());
+    assert!(trainer::checkpoint::Checkpoint::load(Path::new(out)).is_ok());
+    let refused = average("0.5,0.6");
+    assert_eq!(refused.status.code(), Some(1));
+    assert!(said(&refused).contains("expected 2 weights that add up to 1"), "{}", said(&refused));
+}
+
+#[test]
 fn a_folder_without_recipes_is_named() {
     let place = ScratchFolder::new();
     std::fs::remove_file(place.path("recipes/walk.toml")).unwrap();
