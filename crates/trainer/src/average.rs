@@ -7,18 +7,18 @@ use crate::checkpoint::{ACTOR, Checkpoint, CheckpointError, EMA};
 use crate::nn::Network;
 
 /// What checkpoints are averaged with.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub struct Averaging {
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Averaging<'a> {
     /// Weight of each checkpoint; equal ones by default. One below zero leads away from that checkpoint: a policy that has learned on from
     /// another goes further that way.
-    pub weights: Vec<f64>,
+    pub weights: &'a [f64],
     /// Skills whose policies stay as they are in the first checkpoint.
-    pub except: Vec<String>,
+    pub except: &'a [String],
     /// Skill whose policy a checkpoint gives that trained several skills together, where the first one trained a skill alone.
-    pub policy: Option<String>,
+    pub policy: Option<&'a str>,
 }
 
-impl Averaging {
+impl Averaging<'_> {
     /// Refuses what does not fit so many checkpoints, with what was expected and what was found.
     ///
     /// # Errors
@@ -42,13 +42,13 @@ impl Averaging {
     }
 
     /// The policy that stands for `role` in a checkpoint: its moving average, where it has one.
-    fn policy_in<'a>(
+    fn policy_in<'c>(
         &self,
-        (checkpoint, path): &'a (Checkpoint, PathBuf),
+        (checkpoint, path): &'c (Checkpoint, PathBuf),
         role: &str,
-    ) -> Result<&'a Network, CheckpointError> {
+    ) -> Result<&'c Network, CheckpointError> {
         let alone = role == ACTOR && !checkpoint.networks.contains_key(ACTOR);
-        let role = match &self.policy {
+        let role = match self.policy {
             Some(skill) if alone => format!("{skill}.{ACTOR}"),
             _ => role.to_owned(),
         };
@@ -74,7 +74,7 @@ fn moving_average(role: &str) -> String {
 /// When there is no checkpoint.
 pub fn average(
     checkpoints: &[(Checkpoint, PathBuf)],
-    averaging: &Averaging,
+    averaging: Averaging<'_>,
 ) -> Result<Checkpoint, CheckpointError> {
     let mut mean = checkpoints.first().expect("a checkpoint to average").0.clone();
     let averaged = |role: &&String| role.ends_with(ACTOR) && !averaging.keeps(role);
@@ -134,11 +134,11 @@ mod tests {
             of(&[("a.actor", 9.0), ("a.ema", 1.0), ("b.actor", 5.0), ("critic", 7.0)], 3),
             of(&[("a.actor", 8.0), ("a.ema", 3.0), ("b.actor", 6.0), ("critic", 8.0)], 3),
         ];
-        let mean = average(&all, &Averaging { except: vec!["b".into()], ..Averaging::default() }).unwrap();
+        let mean = average(&all, Averaging { except: &["b".into()], ..Averaging::default() }).unwrap();
         let first = |role: &str| mean.networks[role].network.parameters[0];
         assert_eq!(["a.actor", "a.ema", "b.actor", "critic"].map(first), [2.0, 2.0, 5.0, 7.0]);
         assert_eq!(
-            average(&all, &Averaging::default()).unwrap().networks["b.actor"].network.parameters[0],
+            average(&all, Averaging::default()).unwrap().networks["b.actor"].network.parameters[0],
             5.5
         );
     }
@@ -149,9 +149,8 @@ mod tests {
         let several = of(&[("a.actor", 5.0), ("b.actor", 6.0), ("b.ema", 8.0)], 3);
         let all = [alone, several];
         let first = |policy: Option<&str>, weights: &[f64]| {
-            let averaging =
-                Averaging { policy: policy.map(Into::into), weights: weights.into(), ..Averaging::default() };
-            average(&all, &averaging).map(|mean| mean.networks["ema"].network.parameters[0])
+            let averaging = Averaging { policy, weights, ..Averaging::default() };
+            average(&all, averaging).map(|mean| mean.networks["ema"].network.parameters[0])
         };
         assert_eq!(first(Some("b"), &[]).unwrap(), 5.0);
         assert_eq!(first(Some("a"), &[0.75, 0.25]).unwrap(), 2.75);
@@ -164,9 +163,7 @@ mod tests {
 
     #[test]
     fn weights_are_one_for_each_and_add_up_to_one() {
-        let check = |weights: &[f64], count| {
-            Averaging { weights: weights.into(), ..Averaging::default() }.check(count)
-        };
+        let check = |weights: &[f64], count| Averaging { weights, ..Averaging::default() }.check(count);
         assert_eq!(check(&[], 2), Ok(()));
         assert_eq!(check(&[1.15, -0.15], 2), Ok(()));
         assert_eq!(check(&[], 1).unwrap_err(), ["at least two to average", "1"]);
@@ -180,9 +177,9 @@ mod tests {
     #[test]
     fn policies_that_are_missing_or_of_other_sizes_are_named() {
         let one = of(&[("a.actor", 1.0)], 3);
-        let missing = average(&[one.clone(), of(&[("b.actor", 1.0)], 3)], &Averaging::default()).unwrap_err();
+        let missing = average(&[one.clone(), of(&[("b.actor", 1.0)], 3)], Averaging::default()).unwrap_err();
         assert!(missing.to_string().contains("a.actor"), "{missing}");
-        let other = average(&[one, of(&[("a.actor", 1.0)], 4)], &Averaging::default()).unwrap_err();
+        let other = average(&[one, of(&[("a.actor", 1.0)], 4)], Averaging::default()).unwrap_err();
         assert!(other.to_string().contains("[4, 2]"), "{other}");
     }
 }

@@ -96,9 +96,9 @@ pub struct AverageStep {
 }
 
 impl AverageStep {
-    fn averaging(&self) -> Averaging {
-        let Self { weights, except, policy, .. } = self.clone();
-        Averaging { weights, except, policy }
+    fn averaging(&self) -> Averaging<'_> {
+        let Self { weights, except, policy, .. } = self;
+        Averaging { weights, except, policy: policy.as_deref() }
     }
 }
 

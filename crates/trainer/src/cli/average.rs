@@ -10,7 +10,7 @@ use trainer::checkpoint::Checkpoint;
 use super::output::say;
 
 /// Arguments of the verb.
-#[derive(Args, Clone)]
+#[derive(Args)]
 pub(crate) struct Arguments {
     /// Checkpoints, at least two; everything but the policies is the first one's.
     #[arg(required = true)]
@@ -31,8 +31,8 @@ pub(crate) struct Arguments {
 
 /// Averages.
 pub(crate) fn run(arguments: &Arguments) -> Result<()> {
-    let Arguments { weights, except, policy, .. } = arguments.clone();
-    let averaging = Averaging { weights, except, policy };
+    let Arguments { weights, except, policy, .. } = arguments;
+    let averaging = Averaging { weights, except, policy: policy.as_deref() };
     if let Err([expected, found]) = averaging.check(arguments.checkpoints.len()) {
         bail!("expected {expected}, found {found}");
     }
@@ -45,7 +45,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<()> {
     if let Some(folder) = arguments.out.parent() {
         std::fs::create_dir_all(folder).with_context(|| format!("cannot make {}", folder.display()))?;
     }
-    average(&checkpoints, &averaging)?.save(&arguments.out)?;
+    average(&checkpoints, averaging)?.save(&arguments.out)?;
     say(format_args!("wrote {}", arguments.out.display()))?;
     Ok(())
 }

@@ -110,7 +110,7 @@ fn average_runs(step: &AverageStep, workspace: &Workspace, existing: Existing) -
         return check_stamp(&path, &stamp);
     }
     let checkpoints = step.of.iter().map(|name| workspace.required(name)).collect::<Result<Vec<_>>>()?;
-    let mean = average(&checkpoints, &step.averaging())?;
+    let mean = average(&checkpoints, step.averaging())?;
     let folder =
         RunFolder::open(path, if existing == Existing::Resume { Existing::Refuse } else { existing })?;
     folder.clear()?;
