@@ -296,7 +296,11 @@ impl Controller {
         let strafing = strafing_share(self.pack.graph(), &self.state.report.blend);
         let (target_world, facing) = match self.state.capture_step.target(state) {
             Some((target, facing)) => (Some(target), Some(facing)),
-            None => (self.steered(state, self.target(state, command), strafing, dt), command.facing),
+            None => {
+                let target = self.target(state, command);
+                let goes = || target.map(|target| target - state.root().position.truncate());
+                (self.steered(state, target, strafing, dt), command.facing.or_else(goes))
+            }
         };
         let (skeleton, clock) = (self.pack.skeleton(), self.clock());
         let (observation, target) = self.input.split_at_mut(skeleton.observation_len());

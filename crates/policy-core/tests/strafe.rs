@@ -62,11 +62,17 @@ fn a_policy_that_strafes_sees_what_is_left_to_turn_and_its_own_target() {
 }
 
 #[test]
-fn another_policy_and_one_that_is_to_face_no_way_see_what_they_always_see() {
+fn a_way_to_face_changes_one_axis_for_a_policy_that_strafes_and_nothing_for_others() {
     assert_eq!(seen("walk", Some(Vec2::X)), seen("walk", None));
-    let (own, faces) = (seen("crouch", None), seen("crouch", Some(Vec2::X)));
+    // No direction at all: nothing is left to turn.
+    let (own, faces) = (seen("crouch", Some(Vec2::ZERO)), seen("crouch", Some(Vec2::X)));
     let differ = own.iter().zip(&faces).enumerate().filter(|(_, (a, b))| a != b);
     assert_eq!(differ.map(|(index, _)| index).collect::<Vec<_>>(), [43, 44]);
+}
+
+#[test]
+fn without_a_way_to_face_it_faces_where_it_goes() {
+    assert_eq!(seen("crouch", None), seen("crouch", Some(Vec2::Y)));
 }
 
 #[test]

@@ -14,6 +14,7 @@ pub mod plot;
 pub mod ppo;
 pub mod recipe;
 pub mod run;
+pub mod search;
 pub mod style;
 pub mod training;
 pub mod workspace;

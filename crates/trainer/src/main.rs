@@ -48,6 +48,8 @@ enum Verb {
     Keep(cli::keep::Arguments),
     /// Averages the policies of several checkpoints of one run.
     Average(cli::average::Arguments),
+    /// Searches weights of an average of policies that reach what a file asks for.
+    Search(cli::search::Arguments),
     /// Evaluates a pack: falls, speed, skills, response to the stick, pushes, terrain, encounters.
     Evaluate(cli::evaluate::Arguments),
     /// Prints the cost of a control step beside that of larger networks.
@@ -81,6 +83,11 @@ fn main() -> ExitCode {
 fn run(arguments: &Arguments) -> Result<ExitCode> {
     let done = match &arguments.verb {
         Verb::Train(train) => return cli::train::run(&arguments.workspace()?, train),
+        Verb::Search(verb) => {
+            let newest = |skill: &str| newest_or_kept(&arguments.runs, &arguments.kept, skill);
+            let clips = arguments.clips().ok();
+            return cli::search::run(&arguments.model()?, &arguments.recipes, clips.as_ref(), &newest, verb);
+        }
         Verb::Pack(verb) => {
             let newest = |skill: &str| newest_or_kept(&arguments.runs, &arguments.kept, skill);
             let model = arguments.model()?;

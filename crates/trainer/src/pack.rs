@@ -56,6 +56,14 @@ pub enum BindError {
         /// What is wrong with it.
         source: MlpError,
     },
+    /// A pack has no policy of a name.
+    #[error("expected a policy of the pack, one of {known}, found {name}")]
+    Unknown {
+        /// The name.
+        name: String,
+        /// The names that it has.
+        known: String,
+    },
     /// The parts don't fit together.
     #[error(transparent)]
     Pack(#[from] PackError),
@@ -158,6 +166,23 @@ pub fn bind(
         discriminator_normaliser: normalisers.frame.clone(),
         mesh,
     };
+    Ok(CharacterPack::from_parts(manifest, tensors)?)
+}
+
+/// The pack with another policy in place of the one of the same name.
+///
+/// # Errors
+/// When the pack has no policy of that name, or the new one does not fit.
+pub fn with_policy(pack: &CharacterPack, trained: &TrainedSkill) -> Result<CharacterPack, BindError> {
+    let (mut manifest, mut tensors) = (pack.manifest().clone(), pack.tensors().clone());
+    let name = &trained.skill;
+    let Some(id) = pack.policy_named(name) else {
+        let names: Vec<&str> = manifest.policies.iter().map(|policy| policy.name.as_str()).collect();
+        return Err(BindError::Unknown { name: name.clone(), known: names.join(", ") });
+    };
+    tensors.policies[id.index()] = mlp(&trained.actor, name, "policy")?;
+    let entry = &mut manifest.policies[id.index()];
+    (entry.layers, entry.origin) = (trained.actor.sizes().to_vec(), trained.origin.clone());
     Ok(CharacterPack::from_parts(manifest, tensors)?)
 }
 

@@ -240,3 +240,37 @@ fn a_full_disk_under_the_output_is_an_error_and_no_panic() {
     assert_eq!(output.status.code(), Some(1), "{}", said(&output));
     assert!(said(&output).contains("cannot write to the standard output"), "{}", said(&output));
 }
+
+#[test]
+fn a_search_keeps_its_best_pack_and_goes_on_where_it_stopped() {
+    let place = ScratchFolder::new();
+    let assets = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../assets");
+    std::fs::create_dir(place.path("kept")).unwrap();
+    for name in ["strafe", "strafe_rough"] {
+        let file = format!("{name}.safetensors");
+        std::fs::copy(assets.join("checkpoints").join(&file), place.path("kept").join(&file)).unwrap();
+    }
+    let text = "replaces = \"strafe\"\nof = [\"strafe\", \"strafe_rough\"]\nweights = [1.0, 0.0]\n\
+                gaits = [\"strafe\"]\ncharacters = 1\naims = [{ section = \"legs\", \
+                measure = \"foot_slide_mps.strafe\", at_most = 0.0, scale = 0.1 }]";
+    let file = place.path("search.toml");
+    std::fs::write(&file, text).unwrap();
+    let (file, out, pack) = (file, place.path("out"), assets.join("humanoid.pack.safetensors"));
+    let [file, out, pack] = [&file, &out, &pack].map(|path| path.to_str().unwrap());
+    let search = |trials: &str, seed: &str| {
+        place.run(&["search", file, "--out", out, "--pack", pack, "--trials", trials, "--seed", seed])
+    };
+    let lines = || std::fs::read_to_string(Path::new(out).join("trials.jsonl")).unwrap().lines().count();
+    let first = search("2", "1");
+    assert_eq!((first.status.code(), lines()), (Some(0), 2), "{}", said(&first));
+    let best = std::fs::read(Path::new(out).join("best.pack.safetensors")).unwrap();
+    assert!(policy_core::CharacterPack::from_bytes(&best).is_ok());
+    let more = search("3", "1");
+    assert_eq!((more.status.code(), lines()), (Some(0), 3), "{}", said(&more));
+    let other = search("4", "2");
+    assert_eq!((other.status.code(), lines()), (Some(1), 3));
+    assert!(said(&other).contains("line 2: expected weights"), "{}", said(&other));
+    std::fs::remove_file(place.path("kept/strafe_rough.safetensors")).unwrap();
+    let missing = search("4", "1");
+    assert!(said(&missing).contains("named strafe_rough, found none"), "{}", said(&missing));
+}

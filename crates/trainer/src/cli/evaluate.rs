@@ -201,7 +201,7 @@ fn show(player: &PlayerReport, svg: Option<&Path>) -> Result<()> {
 }
 
 /// States of the first clip of every skill that has a recipe.
-fn states_of_clips(
+pub(super) fn states_of_clips(
     model: &Model,
     recipes: &Path,
     clips: &ClipFolder,

@@ -12,6 +12,7 @@ pub(crate) mod normaliser;
 pub(crate) mod output;
 pub(crate) mod pack;
 pub(crate) mod pca;
+pub(crate) mod search;
 pub(crate) mod strip;
 pub(crate) mod train;
 pub(crate) mod view;
