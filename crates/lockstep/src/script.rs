@@ -16,9 +16,9 @@ pub fn script_pad(tick: u32, player: usize) -> Pad {
     let tick = tick.saturating_sub(7 * player as u32);
     let secs = tick as f32 / 30.0;
     let ramp = |from: f32, over: f32| ((secs - from) / over).clamp(0.0, 1.0);
-    // Forward from 0.5 s on; still while it lies; slower at the end.
-    let lies = (11.0..15.5).contains(&secs);
-    let forward = if lies { 0.0 } else { ramp(0.5, 1.0) };
+    // Forward from 0.5 s on; still from the end of the roll until it has got up from the shove; slower at the end.
+    let still = (11.0..15.5).contains(&secs);
+    let forward = if still { 0.0 } else { ramp(0.5, 1.0) };
     let bend = ramp(4.0, 0.5) - ramp(7.0, 0.5);
     let side = if player.is_multiple_of(2) { 1.0 } else { -1.0 };
     let run = ramp(3.0, 1.0) - ramp(7.0, 0.8);
@@ -27,7 +27,7 @@ pub fn script_pad(tick: u32, player: usize) -> Pad {
     buttons.set(Button::East, (9.0..9.2).contains(&secs));
     buttons.set(PUT_BUTTON, (15.6..15.8).contains(&secs));
     buttons.set(THROW_BUTTON, (16.4..16.6).contains(&secs));
-    buttons.set(SHOVE_BUTTON, player == 0 && (11.0..11.2).contains(&secs));
+    buttons.set(SHOVE_BUTTON, player == 0 && (11.6..11.8).contains(&secs));
     Pad {
         left_stick: [(side * bend * 60.0) as i8, (forward * 127.0) as i8],
         triggers: [(crouch * 128.0) as u8, (run * 255.0) as u8],
