@@ -7,8 +7,8 @@ use serde_json::Value;
 
 use super::{Cma, Search};
 
-/// Weights are rounded to this before they are measured: what is found can then be written down.
-const DIGITS: f64 = 1000.0;
+/// Weights are rounded to thousandths before they are measured: what is found can then be written down.
+const STEPS_PER_UNIT: f64 = 1000.0;
 
 /// Weights that were tried.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -127,7 +127,7 @@ impl Searcher {
 
     /// The weights of a candidate.
     fn weights(&self, candidate: &[f64]) -> Vec<f64> {
-        let round = |weight: f64| (weight * DIGITS).round() / DIGITS;
+        let round = |weight: f64| (weight * STEPS_PER_UNIT).round() / STEPS_PER_UNIT;
         let others: Vec<f64> = candidate.iter().map(|weight| round(*weight)).collect();
         let first = round(1.0 - others.iter().sum::<f64>());
         std::iter::once(first).chain(others).collect()
