@@ -11,7 +11,7 @@
 use glam::Vec2;
 
 use crate::footing::steepest;
-use crate::graph::PolicyGraph;
+use crate::graph::{Edge, PolicyGraph};
 use crate::heading::Heading;
 use crate::path::GraphPosition;
 use crate::starts_and_stops::{next_start, next_stop};
@@ -80,10 +80,11 @@ impl OnGraph<'_> {
         self.graph.edge_at(self.position).is_some_and(|edge| edge.transit)
     }
 
-    /// Nearest to the beginning of an edge that is only crossed, and on the way over it.
-    pub(crate) fn is_about_to_cross(&self) -> bool {
+    /// The edge that is only crossed on which this is, or to whose beginning it is nearest, on the way over it.
+    pub(crate) fn crossing(&self) -> Option<&Edge> {
         let [here, there] = [self.position, self.goal].map(GraphPosition::nearest_node);
-        self.graph.edge_between(here, there).is_some_and(|edge| edge.transit)
+        let edge = self.graph.edge_at(self.position).filter(|edge| edge.transit);
+        edge.or_else(|| self.graph.edge_between(here, there)).filter(|edge| edge.transit)
     }
 }
 

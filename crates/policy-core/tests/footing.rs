@@ -91,10 +91,11 @@ fn a_gait_that_stands_rests_on_rough_ground_and_half_way_to_a_walk_its_family_ac
 }
 
 #[test]
-fn on_the_way_over_an_edge_that_is_only_crossed_the_ground_counts_as_level() {
-    let roll_shares = |transit: bool| {
+fn on_the_way_over_an_edge_that_is_only_crossed_the_ground_counts_as_level_unless_both_ends_have_a_variant() {
+    let roll_shares = |transit: bool, both: bool| {
         let mut manifest = common::manifest();
         manifest.policies[1].rough_ground = Some("roll".into());
+        manifest.policies[0].rough_ground = both.then(|| "roll".into());
         manifest.policies[0].fall_height = Some(0.2);
         manifest.edges[0].transit = transit;
         let pack = Arc::new(CharacterPack::from_parts(manifest, common::tensors(0.0)).unwrap());
@@ -114,10 +115,12 @@ fn on_the_way_over_an_edge_that_is_only_crossed_the_ground_counts_as_level() {
         assert_eq!(*towards(1.0, 120).last().unwrap(), 1.0, "it walks on rough ground");
         towards(0.0, 18)
     };
-    let (rested_on, crossed) = (roll_shares(false), roll_shares(true));
+    let (rested_on, crossed) = (roll_shares(false, false), roll_shares(true, false));
     assert!((rested_on[2] - 1.0).abs() < 1e-5, "{rested_on:?}");
     assert!(crossed[2] > 0.5 && crossed[2] < 0.95, "it leaves off within half a second: {crossed:?}");
     assert_eq!(crossed[17], 0.0);
+    let known = roll_shares(true, true);
+    assert!(known.iter().all(|share| *share >= 1.0), "both ends act as their variant all the way: {known:?}");
 }
 
 #[test]
