@@ -67,7 +67,7 @@ enum Verb {
 }
 
 /// Runs a verb. Exit codes: 0 for success, 1 for an error, 2 for wrong arguments, 128 and the signal's number for a
-/// training that a signal stopped.
+/// training or a search that a signal stopped.
 fn main() -> ExitCode {
     // A reader that closes the pipe ends the program quietly.
     sigpipe::reset();
