@@ -83,8 +83,8 @@ impl OnGraph<'_> {
     /// The edge that is only crossed on which this is, or to whose beginning it is nearest, on the way over it.
     pub(crate) fn crossing(&self) -> Option<&Edge> {
         let [here, there] = [self.position, self.goal].map(GraphPosition::nearest_node);
-        let edge = self.graph.edge_at(self.position).filter(|edge| edge.transit);
-        edge.or_else(|| self.graph.edge_between(here, there)).filter(|edge| edge.transit)
+        let edges = [self.graph.edge_at(self.position), self.graph.edge_between(here, there)];
+        edges.into_iter().flatten().find(|edge| edge.transit)
     }
 }
 

@@ -18,7 +18,7 @@ use files::{read_text_bounded, write_atomically};
 use indicatif::{ProgressBar, ProgressStyle};
 use physics::Engine;
 use physics_bridge::Model;
-use policy_core::{CharacterPack, ControllerConfig};
+use policy_core::{CharacterPack, CharacterState, ControllerConfig};
 use serde_json::Value;
 use trainer::average::average;
 use trainer::checkpoint::CheckpointError;
@@ -59,13 +59,13 @@ pub(crate) struct Arguments {
 }
 
 /// What candidates are measured in.
-struct Bench<'a> {
-    model: &'a Model,
+struct Bench {
+    search: Search,
     engine: physics::Model,
-    recipes: &'a Path,
-    clips: Option<&'a ClipFolder>,
     pack: CharacterPack,
     checkpoints: Vec<CheckpointFile>,
+    /// States of the clips that motions are compared with.
+    states: BTreeMap<String, Vec<CharacterState>>,
     effort: Effort,
 }
 
@@ -87,14 +87,17 @@ pub(crate) fn run(
         let expected = || format!("expected a run or a kept checkpoint named {name}, found none");
         newest(name)?.with_context(expected)
     };
+    let pack = super::load::pack(&a.pack)?;
     let bench = Bench {
         checkpoints: search.of.iter().map(load).collect::<Result<_>>()?,
-        pack: super::load::pack(&a.pack)?,
         engine: physics::Model::new(model, Engine::Mujoco)?,
+        states: match clips.filter(|_| needs_clips) {
+            Some(clips) => states_of_clips(model, recipes, clips, &pack)?,
+            None => BTreeMap::new(),
+        },
         effort: effort(&search),
-        recipes,
-        clips,
-        model,
+        search: search.clone(),
+        pack,
     };
     let mut searcher = Searcher::new(search, a.seed);
     std::fs::create_dir_all(&a.out).with_context(|| format!("cannot make {}", a.out.display()))?;
@@ -110,19 +113,19 @@ pub(crate) fn run(
             say(format_args!("stopped by {} after {} trials", signal.name(), searcher.tries()))?;
             return Ok(signal.exit_code());
         }
-        let (search, least) = (searcher.search().clone(), searcher.best().map(|best| best.cost));
-        let trial = searcher.go_on(|weights, section| bench.measure(&search, weights, section))?;
+        let least = searcher.best().map(|best| best.cost);
+        let trial = searcher.go_on(|weights, section| bench.measure(weights, section))?;
         append(&mut trials, &trial).with_context(cannot)?;
         bar.inc(1);
         if least.is_none_or(|least| trial.cost < least) {
             let best = a.out.join(BEST);
-            let bytes = bench.pack_with(&search, &trial.weights)?.to_bytes();
+            let bytes = bench.pack_with(&trial.weights)?.to_bytes();
             write_atomically(&best, &bytes).with_context(|| format!("cannot write {}", best.display()))?;
-            bar.suspend(|| say(format_args!("{}: {}", searcher.tries(), told(&search, &trial))))?;
+            bar.suspend(|| say(format_args!("{}: {}", searcher.tries(), told(&bench.search, &trial))))?;
         }
     }
     bar.finish_and_clear();
-    let best = searcher.best().map(|best| told(searcher.search(), best)).unwrap_or_default();
+    let best = searcher.best().map(|best| told(&bench.search, best)).unwrap_or_default();
     say(format_args!("the best of {}: {best}", searcher.tries()))?;
     Ok(ExitCode::SUCCESS)
 }
@@ -182,8 +185,9 @@ fn told(search: &Search, trial: &Trial) -> String {
     format!("cost {:.3}, weights {}; {}", trial.cost, weights.join(","), measured.join(", "))
 }
 
-impl Bench<'_> {
-    fn pack_with(&self, search: &Search, weights: &[f64]) -> Result<CharacterPack> {
+impl Bench {
+    fn pack_with(&self, weights: &[f64]) -> Result<CharacterPack> {
+        let search = &self.search;
         let mean = average(&self.checkpoints, search.averaging(weights))?;
         let skill = search.policy.as_deref().unwrap_or(&search.replaces);
         let trained = TrainedSkill::from_checkpoint(skill, &mean, &self.checkpoints[0].1)?;
@@ -191,15 +195,12 @@ impl Bench<'_> {
     }
 
     /// The report of a section with these weights.
-    fn measure(&self, search: &Search, weights: &[f64], section: Section) -> Result<Value> {
-        let pack = Arc::new(self.pack_with(search, weights)?);
-        let states = match self.clips.filter(|_| section == Section::Motion) {
-            Some(clips) => states_of_clips(self.model, self.recipes, clips, &pack)?,
-            None => BTreeMap::new(),
-        };
+    fn measure(&self, weights: &[f64], section: Section) -> Result<Value> {
+        let pack = Arc::new(self.pack_with(weights)?);
         let config = ControllerConfig::default();
         let what = (&self.effort, &[section][..]);
-        let evaluation = evaluate(&self.engine, &pack, config, what, &states, &Progress::hidden(), |_| ())?;
+        let evaluation =
+            evaluate(&self.engine, &pack, config, what, &self.states, &Progress::hidden(), |_| ())?;
         Ok(serde_json::to_value(&evaluation)?)
     }
 }

@@ -106,7 +106,7 @@ impl Cma {
         4 + (3.0 * (self.mean.len() as f64).ln()) as usize
     }
 
-    /// The next candidate, the first of all being the start itself. Each is told before the next one is asked for.
+    /// The next candidate. The first one is the start. Its cost has to be told before the next one.
     ///
     /// # Panics
     /// When the candidate before it was not told.

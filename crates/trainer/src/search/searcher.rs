@@ -45,12 +45,6 @@ impl Searcher {
         Self { search, start, cma, best: None, tries: 0 }
     }
 
-    /// What is searched.
-    #[must_use]
-    pub fn search(&self) -> &Search {
-        &self.search
-    }
-
     /// The best trial so far.
     #[must_use]
     pub fn best(&self) -> Option<&Trial> {
@@ -71,13 +65,11 @@ impl Searcher {
         // Asked of a copy: what fails leaves the search as it was.
         let mut cma = self.cma.clone();
         let weights = self.weights(&cma.ask());
-        let pull = |weights: &[f64]| {
-            let moved = weights.iter().zip(&self.start).map(|(now, then)| (now - then).abs());
-            self.search.pull * moved.sum::<f64>()
-        };
+        let moved = weights.iter().zip(&self.start).map(|(now, then)| (now - then).abs());
+        let pull = self.search.pull * moved.sum::<f64>();
         let mut numbers = vec![None; self.search.aims.len()];
         let mut costs = vec![None; self.search.aims.len()];
-        let known = |costs: &[Option<f64>]| pull(&weights) + costs.iter().flatten().sum::<f64>();
+        let known = |costs: &[Option<f64>]| pull + costs.iter().flatten().sum::<f64>();
         for section in self.search.sections() {
             if self.best.as_ref().is_some_and(|best| known(&costs) > best.cost) {
                 break;
