@@ -36,6 +36,7 @@ pub fn pack(model: &Model, mjcf: &str) -> CharacterPack {
         stopping: None,
         turning: None,
         catching: None,
+        rising: None,
         origin: "made up".into(),
     };
     let end = EndEntry {

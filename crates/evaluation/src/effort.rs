@@ -45,6 +45,8 @@ pub struct Effort {
     pub roam_secs: f32,
     /// Ragdoll drops on each uneven ground.
     pub drops_uneven: usize,
+    /// Settled characters that are pushed from each side in each gait.
+    pub shoved: usize,
     /// How exactly the largest push is found in each gait, newton.
     pub push_step_newton: f32,
     /// Tries of each encounter with others, balls, crates, a door and stairs.
@@ -76,6 +78,7 @@ impl Effort {
         roamers: 16,
         roam_secs: 60.0,
         drops_uneven: 200,
+        shoved: 16,
         push_step_newton: 10.0,
         encounters: 48,
         races: 10,
@@ -101,6 +104,7 @@ impl Effort {
         roamers: 4,
         roam_secs: 20.0,
         drops_uneven: 12,
+        shoved: 16,
         push_step_newton: 50.0,
         encounters: 4,
         races: 1,
@@ -119,6 +123,7 @@ impl Effort {
             pushed: count,
             layered: count,
             settled: count,
+            shoved: count,
             straight: count,
             pressed: count,
             pad_players: count,
@@ -162,7 +167,9 @@ impl Effort {
             Section::Robustness => roamed * CASE_COUNT as f32,
             Section::Encounters => nominal_secs(self),
             Section::Race => of(self.races, RACE_SECS),
-            Section::Pushes => gaits as f32 * nominal_trials(self.push_step_newton, self.settled) * 3.0,
+            Section::Pushes => {
+                gaits as f32 * nominal_trials(self.push_step_newton, self.settled.min(self.shoved)) * 3.0
+            }
         }
     }
 }

@@ -68,6 +68,7 @@ fn pack(falls: bool) -> Arc<CharacterPack> {
         stopping: None,
         turning: None,
         catching: None,
+        rising: None,
         origin: "made up".into(),
     };
     let edge = |a: &str, b: &str| EdgeEntry {

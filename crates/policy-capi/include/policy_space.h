@@ -319,7 +319,7 @@ typedef struct PsConfig {
   int32_t cache_blends;
   // Not 0: start the recovery skill when the character has fallen.
   int32_t auto_recover;
-  // Not 0: start it too when standing up out of a low gait takes longer than 0.1 s.
+  // Not 0: start it too when standing up out of a low gait takes longer than 0.1 s, or 2.2 s where the gait has a rising variant.
   int32_t assist_rise;
   // Node to start at.
   int32_t start_node;
@@ -359,8 +359,8 @@ typedef struct PsConfig {
   int32_t footing;
   // Not 0: blend gaits with their starting variants while the character sets off from a stand, with their turning variants
   // while it turns, with their stopping variants while it comes to a stand, with their agile variants while it does not move
-  // yet as it is asked to, with their steady variants once it has for a while, and with their resting variants where it is to
-  // go nowhere.
+  // yet as it is asked to, with their steady variants once it has for a while, with their resting variants where it is to
+  // go nowhere, and with their rising variants while it stands up out of them.
   int32_t agility;
   // Not 0: step back with the pack's first policy that strafes when the body tips over backwards, and catch a push that
   // drives it off its course by the catching variants of its gaits.

@@ -43,7 +43,7 @@ pub struct PsConfig {
     pub cache_blends: i32,
     /// Not 0: start the recovery skill when the character has fallen.
     pub auto_recover: i32,
-    /// Not 0: start it too when standing up out of a low gait takes longer than 0.1 s.
+    /// Not 0: start it too when standing up out of a low gait takes longer than 0.1 s, or 2.2 s where the gait has a rising variant.
     pub assist_rise: i32,
     /// Node to start at.
     pub start_node: i32,
@@ -83,8 +83,8 @@ pub struct PsConfig {
     pub footing: i32,
     /// Not 0: blend gaits with their starting variants while the character sets off from a stand, with their turning variants
     /// while it turns, with their stopping variants while it comes to a stand, with their agile variants while it does not move
-    /// yet as it is asked to, with their steady variants once it has for a while, and with their resting variants where it is to
-    /// go nowhere.
+    /// yet as it is asked to, with their steady variants once it has for a while, with their resting variants where it is to
+    /// go nowhere, and with their rising variants while it stands up out of them.
     pub agility: i32,
     /// Not 0: step back with the pack's first policy that strafes when the body tips over backwards, and catch a push that
     /// drives it off its course by the catching variants of its gaits.

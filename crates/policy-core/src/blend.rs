@@ -98,6 +98,24 @@ impl Blend {
         }
     }
 
+    /// The blend with a share of all of its weight given to one policy. Without room for it, as it is.
+    pub(crate) fn with_share(self, policy: PolicyId, share: f32) -> Self {
+        if share <= 0.0 {
+            return self;
+        }
+        if share >= 1.0 {
+            return Self::single(policy);
+        }
+        let mut shared = self;
+        for term in &mut shared.terms[..shared.len] {
+            term.weights = term.weights.map(|weight| (1.0 - share) * weight);
+        }
+        match shared.add(BlendTerm { policy, weights: [share; MAX_LAYERS] }) {
+            Ok(()) => shared,
+            Err(BlendFull) => self,
+        }
+    }
+
     /// The policies and their blend weights.
     #[must_use]
     pub fn terms(&self) -> &[BlendTerm] {

@@ -6,11 +6,10 @@
 
 use glam::Vec2;
 
-use crate::blend::{Blend, BlendTerm};
+use crate::blend::Blend;
 use crate::fall::fall_height;
 use crate::graph::PolicyGraph;
 use crate::heading::Heading;
-use crate::mlp::MAX_LAYERS;
 use crate::path::GraphPosition;
 use crate::state::CharacterState;
 use crate::strafe::strafing_share;
@@ -84,18 +83,10 @@ impl CaptureStep {
 
     /// A blend of gaits with a share given to the policy that strafes.
     pub(crate) fn with_steps(&self, graph: &PolicyGraph, gaits: Blend) -> Blend {
-        let share = self.acts.share;
-        let Some(steps) = graph.strafing().filter(|_| share > 0.0) else { return gaits };
-        if share >= 1.0 {
-            return Blend::single(steps.into());
+        match graph.strafing() {
+            Some(steps) => gaits.with_share(steps.into(), self.acts.share),
+            None => gaits,
         }
-        let mut shared = Blend::default();
-        for term in gaits.terms() {
-            let weights = term.weights.map(|weight| (1.0 - share) * weight);
-            let _ = shared.push(BlendTerm { policy: term.policy, weights });
-        }
-        let _ = shared.push(BlendTerm { policy: steps.into(), weights: [share; MAX_LAYERS] });
-        shared
     }
 }
 

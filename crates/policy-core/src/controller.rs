@@ -232,7 +232,8 @@ impl Controller {
         let command = self.giving_way(state, &command, dt);
         let command = self.settling(state, &command);
         let (command, goal) = self.bound_for(state, &command);
-        self.travel(goal, heights, dt);
+        self.travel(goal, (state, heights), dt);
+        let command = self.state.rising.commanded(&command);
         self.follow_urgency(state, command.target, dt);
         self.keep_balance(state, &command, dt);
         self.choose_blend(state, &command);
@@ -284,7 +285,7 @@ impl Controller {
                     standing,
                     agile: self.state.urgency,
                 };
-                with_variants(self.pack.graph(), blend, shares)
+                self.state.rising.with_rise(with_variants(self.pack.graph(), blend, shares))
             }
         };
         if let (BlendMode::Switch, Some(policy)) = (self.config.blend_mode, report.blend.strongest()) {

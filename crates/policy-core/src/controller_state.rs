@@ -14,6 +14,7 @@ use crate::give_way::GiveWayState;
 use crate::ids::SkillId;
 use crate::pack::CharacterPack;
 use crate::report::TickReport;
+use crate::rising::Rise;
 use crate::state::JointTargets;
 use crate::steering::SteeringState;
 use crate::variants::Lasting;
@@ -49,6 +50,8 @@ pub struct ControllerState {
     pub(crate) capture_step: CaptureStep,
     /// How it catches a push.
     pub(crate) catch: Lasting,
+    /// How it stands up out of a low gait.
+    pub(crate) rising: Rise,
 }
 
 /// Why a state can't be restored. The controller is unchanged.
@@ -103,6 +106,7 @@ impl ControllerState {
             urgency: Urgency::default(),
             capture_step: CaptureStep::default(),
             catch: Lasting::default(),
+            rising: Rise::default(),
         }
     }
 
@@ -134,6 +138,7 @@ impl ControllerState {
         self.urgency = other.urgency;
         self.capture_step = other.capture_step;
         self.catch = other.catch;
+        self.rising = other.rising;
     }
 
     /// Makes it the state of a new controller again.
@@ -154,6 +159,7 @@ impl ControllerState {
         self.urgency = Urgency::default();
         self.capture_step = CaptureStep::default();
         self.catch = Lasting::default();
+        self.rising = Rise::default();
     }
 
     pub(crate) fn same_size(&self, other: &Self) -> bool {

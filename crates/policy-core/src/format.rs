@@ -199,6 +199,9 @@ pub struct PolicyEntry {
     /// Name of its catching variant; see [`Node::catching`](crate::training::Node::catching).
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub catching: Option<String>,
+    /// Name of its rising variant; see [`Node::rising`](crate::training::Node::rising).
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub rising: Option<String>,
     /// Where the policy comes from: recipe, samples, seed.
     #[serde(default)]
     pub origin: String,

@@ -42,6 +42,9 @@ pub struct Node {
     pub turning: Option<NodeId>,
     /// Variant of the policy that acts where a push drives a character that goes off its course, until it has its balance back.
     pub catching: Option<NodeId>,
+    /// Variant of a low policy, such as a crawl, that acts while the character stands up out of it: until it has stood up for the fall height
+    /// of that variant.
+    pub rising: Option<NodeId>,
 }
 
 impl Node {
@@ -51,11 +54,11 @@ impl Node {
         self.speed_mps == Some(0.0)
     }
 
-    /// Its variants, where it has them: for rough ground, agile, steady, resting, starting, stopping, turning, catching.
+    /// Its variants, where it has them: for rough ground, agile, steady, resting, starting, stopping, turning, catching, rising.
     #[must_use]
-    pub fn variants(&self) -> [Option<NodeId>; 8] {
+    pub fn variants(&self) -> [Option<NodeId>; 9] {
         let Self { rough_ground, agile, steady, resting, starting, stopping, turning, catching, .. } = *self;
-        [rough_ground, agile, steady, resting, starting, stopping, turning, catching]
+        [rough_ground, agile, steady, resting, starting, stopping, turning, catching, self.rising]
     }
 }
 
@@ -288,6 +291,11 @@ impl PolicyGraph {
     /// The first node that strafes.
     pub(crate) fn strafing(&self) -> Option<NodeId> {
         self.strafing
+    }
+
+    /// The first node that is a gait that stands.
+    pub(crate) fn standing(&self) -> Option<NodeId> {
+        self.nodes.iter().position(Node::stands).map(NodeId::new)
     }
 
     /// True when `position` lies on a node or an edge of this graph.

@@ -98,6 +98,7 @@ mod pack_error;
 mod pack_parts;
 mod path;
 mod report;
+mod rising;
 mod route;
 mod scorer;
 mod skeleton;

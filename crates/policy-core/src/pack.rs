@@ -78,6 +78,7 @@ impl CharacterPack {
                 stopping: variant(&p.stopping)?,
                 turning: variant(&p.turning)?,
                 catching: variant(&p.catching)?,
+                rising: variant(&p.rising)?,
             })
         });
         let nodes = nodes.collect::<Result<Vec<_>, PackError>>()?;

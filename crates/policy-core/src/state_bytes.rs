@@ -1,7 +1,7 @@
 //! A [`ControllerState`] as bytes, little-endian, of one length for each pack.
 //!
 //! Order: version, report, fall timers, frame history, resting blend, interrupted skill, joint targets, targets before the hand-over, times of
-//! hand-over, settling and pending skill, steering with the side of a turn, giving way, unevenness, urgency, capture step, catch. An absent value
+//! hand-over, settling and pending skill, steering with the side of a turn, giving way, unevenness, urgency, capture step, catch, rise. An absent value
 //! is a zero flag and zeros, so that equal states give equal bytes.
 
 use crate::agility::Urgency;
@@ -17,7 +17,7 @@ use crate::report::{StateFault, TickReport};
 use crate::skill::{Refusal, SkillEnd, SkillProgress};
 
 /// First four bytes: `PSS` and the version.
-const VERSION: u32 = u32::from_le_bytes(*b"PSS\x0e");
+const VERSION: u32 = u32::from_le_bytes(*b"PSS\x0f");
 
 const POSITION_LEN: usize = 2 + 2 + 4;
 const BLEND_LEN: usize = 1 + MAX_BLEND_TERMS * (2 + 4 * MAX_LAYERS);
@@ -25,7 +25,7 @@ const SKILL_LEN: usize = 3;
 const PROGRESS_LEN: usize = 2 * SKILL_LEN + 4 + 4 + 1 + 4;
 const REPORT_LEN: usize =
     2 * POSITION_LEN + BLEND_LEN + 1 + 8 + PROGRESS_LEN + 2 * SKILL_LEN + 2 * (SKILL_LEN + 1) + 3;
-const FIXED_LEN: usize = 4 + REPORT_LEN + 8 + 2 + BLEND_LEN + 4 + SKILL_LEN + 12 + 13 + 12 + 57 + 24 + 8;
+const FIXED_LEN: usize = 4 + REPORT_LEN + 8 + 2 + BLEND_LEN + 4 + SKILL_LEN + 12 + 13 + 12 + 57 + 24 + 8 + 6;
 
 impl ControllerState {
     /// Number of bytes; one for all states of a pack.
@@ -66,6 +66,8 @@ impl ControllerState {
         let CaptureStep { acts, way, facing } = self.capture_step;
         w.floats(&[acts.share, acts.secs, way.x, way.y, facing.x, facing.y]);
         w.floats(&[self.catch.share, self.catch.secs]);
+        w.id(self.rising.variant.index());
+        w.floats(&[self.rising.share]);
         debug_assert_eq!(w.at, w.out.len());
     }
 
@@ -124,6 +126,8 @@ impl ControllerState {
         (steps.way.x, steps.way.y) = (r.float(), r.float());
         (steps.facing.x, steps.facing.y) = (r.float(), r.float());
         (self.catch.share, self.catch.secs) = (r.float(), r.float());
+        self.rising.variant = NodeId::new(r.id());
+        self.rising.share = r.float();
         Ok(())
     }
 }

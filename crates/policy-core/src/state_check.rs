@@ -50,6 +50,7 @@ impl ControllerState {
         field("position", "a position on the graph", place(self.report.position))?;
         field("goal", "a position on the graph", place(self.report.goal))?;
         let policies = pack.policies().len();
+        field("rising variant", "a policy of the pack", self.rising.variant.index() < policies)?;
         let known = |blend: &Blend| {
             let good = |w: &f32| w.is_finite();
             blend.terms().iter().all(|t| t.policy.index() < policies && t.weights.iter().all(good))
@@ -82,7 +83,7 @@ impl ControllerState {
     }
 
     fn check_ranges(&self) -> Result<(), StateError> {
-        let Self { fall, urgency, capture_step, catch, .. } = self;
+        let Self { fall, urgency, capture_step, catch, rising, .. } = self;
         let within = |most: f32| move |number: &f32| (0.0..=most).contains(number);
         let progress = self.report.skill.map_or([0.0; 2], |s| [s.seconds, s.held_seconds]);
         let counts = [fall.low_seconds, fall.rising_seconds, self.pending_secs, progress[0], progress[1]];
@@ -95,7 +96,7 @@ impl ControllerState {
         field("times of moments", "0 to 10 s", moments.iter().all(within(LONGEST_MOMENT_SECS)))?;
         let Turn { share, way: turns_to, .. } = turn;
         let shares = [self.unevenness, to_move, to_rest, to_stand, at_rest, as_asked, at_pace];
-        let lasting = [start.share, stop.share, share, acts.share, catch.share];
+        let lasting = [start.share, stop.share, share, acts.share, catch.share, rising.share];
         field("shares", "0 to 1", shares.iter().chain(&lasting).all(within(1.0)))?;
         let is_direction = |squared: f32| squared == 0.0 || UNIT_SQUARES.contains(&squared);
         let directions = [turns_to, way, facing].map(|way| is_direction(way.length_squared()));

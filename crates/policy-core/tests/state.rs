@@ -99,17 +99,20 @@ fn bad_bytes_are_refused_and_leave_a_new_state() {
     assert!(matches!(refused(&|b| b[3] ^= 0x80), StateError::Version { .. }));
     assert!(matches!(refused(&|b| b[4] = 200), StateError::Field { field: "position", .. }));
     let numbers = |b: &mut Vec<u8>| {
-        let at = b.len() - 4;
+        let at = b.len() - RISE_LEN - 4;
         b[at..at + 4].copy_from_slice(&f32::NAN.to_le_bytes());
     };
     assert!(matches!(refused(&numbers), StateError::Field { field: "times", .. }));
     // Behind the flag of a turn lie the eight numbers of a capture step and of a catch.
     let flag = |b: &mut Vec<u8>| {
-        let at = b.len() - 8 * 4 - 1;
+        let at = b.len() - RISE_LEN - 8 * 4 - 1;
         b[at] = 2;
     };
     assert!(matches!(refused(&flag), StateError::Field { field: "a flag", .. }));
 }
+
+/// Bytes of a rise, which come last: its variant and its share.
+const RISE_LEN: usize = 2 + 4;
 
 /// Bytes of a state with one number replaced: of the settling time, a share, a direction, a joint target and so on.
 #[test]
@@ -123,7 +126,7 @@ fn numbers_out_of_their_ranges_are_refused() {
     controller.save_into(&mut state);
     let mut good = vec![0; state.byte_len()];
     state.write_bytes(&mut good);
-    let len = good.len();
+    let len = good.len() - RISE_LEN;
     let steering = len - (13 + 12 + 57 + 24 + 8);
     let urgency = steering + 13 + 12;
     let mut field_of = |at: usize, number: f32| {
@@ -147,7 +150,7 @@ fn numbers_out_of_their_ranges_are_refused() {
             ["times of moments", "times of moments", "none"]
         );
     }
-    let shares = (0..8).chain([9, 11]).map(|i| urgency + 4 * i).chain([len - 32, len - 8]);
+    let shares = (0..8).chain([9, 11]).map(|i| urgency + 4 * i).chain([len - 32, len - 8, len + 2]);
     for at in shares {
         assert_eq!([1.5, -0.1, 1.0].map(|n| field_of(at, n)), ["shares", "shares", "none"], "{at}");
     }
@@ -159,6 +162,8 @@ fn numbers_out_of_their_ranges_are_refused() {
         assert_eq!([1e38, -1e38, 99.0].map(|n| field_of(at, n)), ["joint targets", "joint targets", "none"]);
     }
     assert_eq!(field_of(steering, f32::INFINITY), "numbers");
+    // The variant of a rise, and two bytes of its share.
+    assert_eq!(field_of(len, f32::from_bits(0x0000_ffff)), "rising variant");
 }
 
 #[test]

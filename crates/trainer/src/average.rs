@@ -5,6 +5,7 @@ use std::path::PathBuf;
 
 use crate::checkpoint::{ACTOR, Checkpoint, CheckpointError, EMA};
 use crate::nn::Network;
+use crate::posture::Posture;
 
 /// What checkpoints are averaged with.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -16,6 +17,8 @@ pub struct Averaging<'a> {
     pub except: &'a [String],
     /// Skill whose policy a checkpoint gives that trained several skills together, where the first one trained a skill alone.
     pub policy: Option<&'a str>,
+    /// Offsets that the means get.
+    pub posture: Option<&'a Posture>,
 }
 
 impl Averaging<'_> {
@@ -95,8 +98,12 @@ pub fn average(
             }
             sum.iter_mut().zip(&network.parameters).for_each(|(sum, p)| *sum += weight * f64::from(*p));
         }
+        let mut mean_of_role: Vec<f64> = sum.iter().map(|sum| sum / total).collect();
+        if let Some(posture) = averaging.posture {
+            posture.apply(&mut mean_of_role);
+        }
         let set = |network: &mut Network| {
-            network.parameters.iter_mut().zip(&sum).for_each(|(p, sum)| *p = (sum / total) as f32);
+            network.parameters.iter_mut().zip(&mean_of_role).for_each(|(p, mean)| *p = *mean as f32);
         };
         for role in [&role, &moving_average(&role)] {
             if let Some(trained) = mean.networks.get_mut(role) {

@@ -11,6 +11,7 @@ pub mod onnx;
 pub mod pack;
 mod parts;
 pub mod plot;
+pub mod posture;
 pub mod ppo;
 pub mod recipe;
 pub mod run;

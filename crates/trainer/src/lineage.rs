@@ -1,6 +1,6 @@
 //! Lineages: plans of runs in order, with recipes, starts and averages, so that a pack can be made again.
 
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 
 use serde::{Deserialize, Serialize};
@@ -9,6 +9,7 @@ use files::quoted;
 use files::read_text_bounded;
 
 use crate::average::Averaging;
+use crate::posture::Posture;
 
 mod execute;
 
@@ -93,12 +94,15 @@ pub struct AverageStep {
     /// Skill whose policy a run gives that trained several skills together, where the first one trained a skill alone.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub policy: Option<String>,
+    /// Offsets of joint targets that the mean gets, radians, as [`Posture`](crate::posture::Posture) has them.
+    #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
+    pub posture: BTreeMap<String, f64>,
 }
 
 impl AverageStep {
-    fn averaging(&self) -> Averaging<'_> {
+    fn averaging<'a>(&'a self, posture: Option<&'a Posture>) -> Averaging<'a> {
         let Self { weights, except, policy, .. } = self;
-        Averaging { weights, except, policy: policy.as_deref() }
+        Averaging { weights, except, policy: policy.as_deref(), posture }
     }
 }
 
@@ -209,7 +213,7 @@ impl Lineage {
                     return Err(wrong(index, "at least one sample", "0".into()));
                 }
                 Step::Average(average) => {
-                    if let Err([expected, found]) = average.averaging().check(average.of.len()) {
+                    if let Err([expected, found]) = average.averaging(None).check(average.of.len()) {
                         return Err(wrong(index, &expected, found));
                     }
                 }

@@ -48,7 +48,7 @@ enum Verb {
     Keep(cli::keep::Arguments),
     /// Averages the policies of several checkpoints of one run.
     Average(cli::average::Arguments),
-    /// Searches weights of an average of policies that reach what a file asks for.
+    /// Searches weights of an average of policies, and its posture, that reach what a file asks for.
     Search(cli::search::Arguments),
     /// Evaluates a pack: falls, speed, skills, response to the stick, pushes, terrain, encounters.
     Evaluate(cli::evaluate::Arguments),
@@ -97,7 +97,7 @@ fn run(arguments: &Arguments) -> Result<ExitCode> {
             let normalisers = arguments.normalisers(&arguments.model()?)?;
             cli::keep::run(&normalisers, &arguments.runs, &arguments.kept, verb)
         }
-        Verb::Average(verb) => cli::average::run(verb),
+        Verb::Average(verb) => cli::average::run(|| arguments.model(), verb),
         Verb::Evaluate(verb) => {
             let clips = arguments.clips().ok();
             cli::evaluate::run(&arguments.model()?, &arguments.recipes, clips.as_ref(), verb)

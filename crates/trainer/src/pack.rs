@@ -215,6 +215,7 @@ fn policies(plan: &PackPlan, trained: &[TrainedSkill]) -> Result<(Vec<Mlp>, Vec<
             stopping: planned.stopping.clone(),
             turning: planned.turning.clone(),
             catching: planned.catching.clone(),
+            rising: planned.rising.clone(),
             origin: skill.origin.clone(),
         });
     }

@@ -9,7 +9,7 @@ use files::quoted;
 use serde::Serialize;
 
 use crate::amp::DiscriminatorConfig;
-use crate::env::{EnvironmentConfig, MET, PLAYED};
+use crate::env::{EnvironmentConfig, MET};
 use crate::ppo::PpoConfig;
 
 mod checks;
@@ -177,8 +177,9 @@ impl Recipe {
     pub(crate) fn driven_by(&self) -> Option<(&'static str, &'static [&'static str])> {
         let any =
             |needs: fn(&EnvironmentConfig) -> bool| self.phases.iter().any(|phase| needs(&phase.environment));
-        if any(|environment| environment.reset.in_play.is_some()) {
-            Some(("environment.reset.in_play", PLAYED))
+        let in_play = self.phases.iter().find_map(|phase| phase.environment.reset.in_play);
+        if let Some(in_play) = in_play {
+            Some(("environment.reset.in_play", in_play.out_of.played()))
         } else if any(|environment| environment.meetings.share > 0.0) {
             Some(("environment.meetings", &MET))
         } else {

@@ -1,8 +1,10 @@
-//! Searches: the weights of an average of policies, found by measuring packs.
+//! Searches: the weights of an average of policies, and its posture, found by measuring packs.
 //!
 //! Training leads a policy to what is rewarded. Means of policies of one family, also with weights below zero, are policies too, and some are
-//! better by a measure that no reward has. A search draws weights by CMA-ES, puts each mean into a pack, and measures what its aims name.
+//! better by a measure that no reward has. So are policies whose joint targets are off by a little ([`Posture`]). A search draws weights and
+//! offsets by CMA-ES, puts each mean into a pack, and measures what its aims name.
 
+use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
 use evaluation::Section;
@@ -13,12 +15,13 @@ use serde::{Deserialize, Serialize};
 use serde_json::Value;
 
 use crate::average::Averaging;
+use crate::posture::Posture;
 
 mod cma;
 mod searcher;
 
 pub use cma::Cma;
-pub use searcher::{Searcher, Trial};
+pub use searcher::{Candidate, Searcher, Trial};
 
 /// Largest file of a search, bytes.
 const MOST_BYTES: u64 = 1 << 20;
@@ -37,10 +40,13 @@ pub struct Search {
     /// Weights to begin with, adding up to 1; equal ones by default.
     #[serde(default)]
     pub weights: Vec<f64>,
-    /// Standard deviation of the weights of the first candidates.
+    /// Joints whose targets get an offset, and the offset to begin with, radians, as [`Posture`] has them; none by default.
+    #[serde(default)]
+    pub posture: BTreeMap<String, f64>,
+    /// Standard deviation of the weights, and of the offsets in radians, of the first candidates.
     #[serde(default = "spread")]
     pub spread: f64,
-    /// Cost of each unit by which weights differ from those at the beginning, in the sum over all.
+    /// Cost of each unit by which weights and offsets differ from those at the beginning, in the sum over all.
     #[serde(default)]
     pub pull: f64,
     /// Gaits to measure, as `trainer evaluate --gaits`; all by default.
@@ -189,7 +195,7 @@ impl Search {
     fn check(&self) -> Result<(), (String, String, String)> {
         let err =
             |field: &str, expected: &str, found: String| Err((field.to_owned(), expected.to_owned(), found));
-        if let Err([expected, found]) = self.averaging(&self.weights).check(self.of.len()) {
+        if let Err([expected, found]) = self.averaging(&self.weights, None).check(self.of.len()) {
             return err("weights", &expected, found);
         }
         if !(self.spread > 0.0 && self.spread <= 1.0) {
@@ -227,10 +233,10 @@ impl Search {
         Ok(())
     }
 
-    /// How the checkpoints are averaged with some weights.
+    /// How the checkpoints are averaged with some weights and a posture.
     #[must_use]
-    pub fn averaging<'a>(&'a self, weights: &'a [f64]) -> Averaging<'a> {
-        Averaging { weights, policy: self.policy.as_deref(), except: &[] }
+    pub fn averaging<'a>(&'a self, weights: &'a [f64], posture: Option<&'a Posture>) -> Averaging<'a> {
+        Averaging { weights, policy: self.policy.as_deref(), except: &[], posture }
     }
 
     /// The sections to measure, each once, in the order of the aims.

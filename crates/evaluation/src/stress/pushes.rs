@@ -1,4 +1,4 @@
-//! Pushes from four sides, on torso and pelvis, in every gait: the largest that all but one of 16 characters survive.
+//! Pushes from four sides, on torso and pelvis, in every gait: the largest that 15 of 16 characters survive.
 
 use std::collections::BTreeMap;
 
@@ -19,7 +19,7 @@ const SURVIVED_SECS: f32 = 3.0;
 const MOST_NEWTON: f32 = 1000.0;
 
 /// Of so many characters all but one have to survive.
-const CHARACTERS: usize = 16;
+const OF_WHICH_ONE_MAY_FALL: usize = 16;
 
 /// Largest pushes, newton, by the side that they push to; the character goes forward.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
@@ -40,7 +40,7 @@ pub struct SidesReport {
 pub fn measure_pushes(rig: &Rig<'_>, body: BodyId) -> BTreeMap<String, SidesReport> {
     let measure = |gait: &_| {
         let settled = rig.settled(gait);
-        let settled = &settled[..settled.len().min(CHARACTERS)];
+        let settled = &settled[..settled.len().min(rig.effort.shoved)];
         let side = |direction: Vec3| {
             largest(MOST_NEWTON, rig.effort.push_step_newton, |newton| {
                 let up =
@@ -60,13 +60,13 @@ pub fn measure_pushes(rig: &Rig<'_>, body: BodyId) -> BTreeMap<String, SidesRepo
 
 /// True when no more than one of sixteen characters fell.
 fn is_enough(up: usize, characters: usize) -> bool {
-    characters > 0 && up * CHARACTERS >= characters * (CHARACTERS - 1)
+    characters > 0 && up * OF_WHICH_ONE_MAY_FALL >= characters * (OF_WHICH_ONE_MAY_FALL - 1)
 }
 
 /// Trials for one gait, by rule of thumb.
-pub(crate) fn nominal_trials(step_newton: f32, settled: usize) -> f32 {
+pub(crate) fn nominal_trials(step_newton: f32, shoved: usize) -> f32 {
     let tries = 2.0 + (MOST_NEWTON / step_newton).log2().ceil();
-    2.0 * 4.0 * tries * settled.min(CHARACTERS) as f32
+    2.0 * 4.0 * tries * shoved as f32
 }
 
 fn survives(rig: &Rig<'_>, from: &Settled, body: BodyId, force: Vec3) -> bool {

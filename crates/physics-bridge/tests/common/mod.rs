@@ -114,6 +114,7 @@ fn policy_entry(name: &str, sizes: &[usize]) -> PolicyEntry {
         stopping: None,
         turning: None,
         catching: None,
+        rising: None,
         origin: "made up".into(),
     }
 }

@@ -16,8 +16,9 @@ pub struct ControllerConfig {
     pub cache_blends: bool,
     /// Start the pack's recovery skill when the character has fallen.
     pub auto_recover: bool,
-    /// Start it too when the character is to stand up out of a low gait and has not within 0.1 s. Otherwise it acts to and
-    /// fro along the edge from 0.8 s on, and has fallen after [`RISE_SECONDS`](crate::training::RISE_SECONDS).
+    /// Start it too when the character is to stand up out of a low gait and has not within 0.1 s, or within 2.2 s where the gait has a
+    /// rising variant and `agility` lets it act. Otherwise it acts to and fro along the edge from 0.8 s on, and has fallen after
+    /// [`RISE_SECONDS`](crate::training::RISE_SECONDS).
     pub assist_rise: bool,
     /// Node to start at. One that is not there means the first.
     pub start: NodeId,
@@ -39,8 +40,8 @@ pub struct ControllerConfig {
     pub footing: bool,
     /// Blend gaits with their starting variants while the character sets off from a stand, with their turning variants while it turns, with their
     /// stopping variants while it comes to a stand, with their agile variants while it does not move yet as it is asked to, with their steady
-    /// variants once it has for a while, and with their resting variants where it is to go nowhere, the default; where the pack has none,
-    /// nothing changes.
+    /// variants once it has for a while, with their resting variants where it is to go nowhere, and with their rising variants while it stands
+    /// up out of them, the default; where the pack has none, nothing changes.
     pub agility: bool,
     /// Step back with the pack's first policy that strafes when the body tips over backwards, and catch a push that drives it off its course
     /// by the catching variants of its gaits, the default; where the pack has no policies for it, nothing changes.

@@ -107,8 +107,10 @@ impl Controller {
     /// Starts the recovery skill after a fall.
     pub(super) fn detect_fall(&mut self, state: &CharacterState, dt: f32) {
         let report = &mut self.state.report;
+        // One that rises lies where it begins, and has a time of its own.
         let limit = match report.skill {
             Some(_) => None,
+            None if self.state.rising.share > 0.0 => None,
             None => fall_height(self.pack.graph(), report.position),
         };
         let lies = lies(self.pack.graph(), limit, state);

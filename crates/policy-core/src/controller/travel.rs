@@ -4,7 +4,7 @@ use glam::Vec2;
 
 use super::Controller;
 use crate::agility::{OnGraph, Urgency};
-use crate::balance::comes_to_rest;
+use crate::balance::{comes_to_rest, is_balanced};
 use crate::capture_step::CaptureStep;
 use crate::catching::{next_catch, out_of_skill};
 use crate::command::Command;
@@ -13,15 +13,20 @@ use crate::give_way::GiveWayState;
 use crate::ids::NodeId;
 use crate::path::GraphPosition;
 use crate::report::TickReport;
+use crate::rising::{Rise, committed, rising_variant};
 use crate::skill::SkillProgress;
 use crate::state::CharacterState;
+use crate::state_check::countdown_secs;
 use crate::steering::SteeringState;
 use crate::strafe::waits_before_leaving;
 use crate::turning::Turn;
 use crate::variants::Lasting;
 
-/// Seconds that a character has to stand up by itself out of a low gait.
+/// Seconds that a character has to stand up by itself out of a low gait without a rising variant.
 const ASSIST_SECONDS: f32 = 0.1;
+
+/// Seconds that one with a rising variant has.
+const OWN_RISE_SECONDS: f32 = 2.2;
 
 impl Controller {
     /// Where on the graph to go: to the nearest node that a pending skill may start from, else to the command's goal.
@@ -55,24 +60,59 @@ impl Controller {
     }
 
     /// Moves along the graph towards a goal. Leaving a low gait requires standing first.
-    pub(super) fn travel(&mut self, goal: GraphPosition, heights: Heights, dt: f32) {
+    pub(super) fn travel(
+        &mut self,
+        goal: GraphPosition,
+        (state, heights): (&CharacterState, Heights),
+        dt: f32,
+    ) {
         if self.state.report.skill.is_some() {
+            self.state.rising = Rise::default();
             return;
         }
         let graph = self.pack.graph();
         let report = &mut self.state.report;
         report.goal = goal;
         let mut next = report.position;
-        graph.travel(&mut next, report.goal, dt);
-        let limits = step_heights(graph, [report.position, next]);
-        if !self.state.fall.holds_back(limits, heights, dt) {
-            report.position = next;
-        } else if let (true, true, Some(recovery)) =
-            (self.config.assist_rise, self.state.fall.rising_seconds() > ASSIST_SECONDS, self.pack.recovery())
-        {
-            let (rising, pending) = (self.state.fall.rising_seconds, self.state.report.pending_skill);
+        let on_the_way = committed(graph, next).filter(|_| self.config.agility);
+        graph.travel(&mut next, on_the_way.unwrap_or(report.goal), dt);
+        // Once it rises it rises to its feet, whatever is asked of it meanwhile, unless that takes too long.
+        let in_time = self.state.fall.rising_seconds <= OWN_RISE_SECONDS;
+        let rises = self.state.rising.share > 0.0 && self.state.fall.rising_seconds > 0.0 && in_time;
+        let waits = match rises {
+            true => {
+                self.state.fall.rising_seconds += dt;
+                true
+            }
+            false => self.state.fall.holds_back(step_heights(graph, [report.position, next]), heights, dt),
+        };
+        let secs = self.state.fall.rising_seconds;
+        let variant =
+            if rises { Some(self.state.rising.variant) } else { rising_variant(graph, report.position) };
+        let variant = variant.filter(|_| waits && self.config.agility && secs <= OWN_RISE_SECONDS);
+        let stands = |variant: NodeId| heights.has_risen(graph.node(variant).fall_height.unwrap_or_default());
+        let in_balance = || self.state.rising.share >= 1.0 && is_balanced(self.pack.skeleton(), state);
+        let risen = variant.is_some_and(stands) && in_balance();
+        self.state.rising = self.state.rising.next(variant.filter(|_| !risen), dt);
+        match variant {
+            Some(_) if risen => {
+                report.position = graph.standing().map_or(next, GraphPosition::node);
+                self.state.fall.reset();
+                self.state.settle_secs = countdown_secs(self.config.settle_secs);
+            }
+            Some(_) => {}
+            None if !waits => report.position = next,
+            None => self.be_raised(secs),
+        }
+    }
+
+    /// Starts the recovery skill of a character that has not stood up by itself in time.
+    fn be_raised(&mut self, rising_secs: f32) {
+        let assists = self.config.assist_rise && rising_secs > ASSIST_SECONDS;
+        if let Some(recovery) = self.pack.recovery().filter(|_| assists) {
+            let pending = self.state.report.pending_skill;
             self.start_skill(SkillProgress::start(recovery));
-            self.state.fall.rising_seconds = rising;
+            self.state.fall.rising_seconds = rising_secs;
             // The character rises for it.
             self.state.report.pending_skill = pending;
         }

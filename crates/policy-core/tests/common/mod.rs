@@ -140,6 +140,7 @@ pub fn manifest() -> Manifest {
         stopping: None,
         turning: None,
         catching: None,
+        rising: None,
         origin: "made up".into(),
     };
     let edge = |a: &str, b: &str| EdgeEntry {

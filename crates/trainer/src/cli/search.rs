@@ -1,4 +1,4 @@
-//! `trainer search`: weights of an average of policies that reach what a file asks for.
+//! `trainer search`: weights of an average of policies, and its posture, that reach what a file asks for.
 
 use std::collections::BTreeMap;
 use std::fs::{File, OpenOptions};
@@ -23,7 +23,8 @@ use serde_json::Value;
 use trainer::average::average;
 use trainer::checkpoint::CheckpointError;
 use trainer::pack::{TrainedSkill, with_policy};
-use trainer::search::{Search, Searcher, Trial};
+use trainer::posture::Posture;
+use trainer::search::{Candidate, Search, Searcher, Trial};
 use trainer::workspace::CheckpointFile;
 
 use super::evaluate::states_of_clips;
@@ -114,12 +115,12 @@ pub(crate) fn run(
             return Ok(signal.exit_code());
         }
         let least = searcher.best().map(|best| best.cost);
-        let trial = searcher.go_on(|weights, section| bench.measure(weights, section))?;
+        let trial = searcher.go_on(|candidate, section| bench.measure(candidate, section))?;
         append(&mut trials, &trial).with_context(cannot)?;
         bar.inc(1);
         if least.is_none_or(|least| trial.cost < least) {
             let best = a.out.join(BEST);
-            let bytes = bench.pack_with(&trial.weights)?.to_bytes();
+            let bytes = bench.pack_with(&trial.candidate)?.to_bytes();
             write_atomically(&best, &bytes).with_context(|| format!("cannot write {}", best.display()))?;
             bar.suspend(|| say(format_args!("{}: {}", searcher.tries(), told(&bench.search, &trial))))?;
         }
@@ -159,10 +160,7 @@ fn replay(searcher: &mut Searcher, path: &Path) -> Result<()> {
         let at = || format!("{}, line {}", path.display(), index + 1);
         let trial: Trial = serde_json::from_str(line).with_context(at)?;
         if let Err([expected, found]) = searcher.replay(&trial) {
-            bail!(
-                "{}: expected weights {expected} next, found {found}: is it of another file or seed?",
-                at()
-            );
+            bail!("{}: expected {expected} next, found {found}: is it of another file or seed?", at());
         }
     }
     Ok(())
@@ -175,28 +173,28 @@ fn append(file: &mut File, trial: &Trial) -> Result<()> {
     Ok(file.flush()?)
 }
 
-/// A trial in words, with its weights as `trainer average --weights` takes them.
+/// A trial in words.
 fn told(search: &Search, trial: &Trial) -> String {
-    let weights: Vec<String> = trial.weights.iter().map(f64::to_string).collect();
     let number = |number: &Option<f64>| number.map_or("none".to_owned(), |number| format!("{number:.4}"));
     let measured = search.aims.iter().zip(&trial.measured);
     let measured: Vec<String> =
         measured.map(|(aim, found)| format!("{} {}", aim.measure, number(found))).collect();
-    format!("cost {:.3}, weights {}; {}", trial.cost, weights.join(","), measured.join(", "))
+    format!("cost {:.3}, {}; {}", trial.cost, trial.candidate, measured.join(", "))
 }
 
 impl Bench {
-    fn pack_with(&self, weights: &[f64]) -> Result<CharacterPack> {
+    fn pack_with(&self, candidate: &Candidate) -> Result<CharacterPack> {
         let search = &self.search;
-        let mean = average(&self.checkpoints, search.averaging(weights))?;
+        let posture = Posture::of(self.pack.skeleton(), &candidate.posture)?;
+        let mean = average(&self.checkpoints, search.averaging(&candidate.weights, posture.as_ref()))?;
         let skill = search.policy.as_deref().unwrap_or(&search.replaces);
         let trained = TrainedSkill::from_checkpoint(skill, &mean, &self.checkpoints[0].1)?;
         Ok(with_policy(&self.pack, &TrainedSkill { skill: search.replaces.clone(), ..trained })?)
     }
 
-    /// The report of a section with these weights.
-    fn measure(&self, weights: &[f64], section: Section) -> Result<Value> {
-        let pack = Arc::new(self.pack_with(weights)?);
+    /// The report of a section with a candidate.
+    fn measure(&self, candidate: &Candidate, section: Section) -> Result<Value> {
+        let pack = Arc::new(self.pack_with(candidate)?);
         let config = ControllerConfig::default();
         let what = (&self.effort, &[section][..]);
         let evaluation =

@@ -37,6 +37,10 @@ pub enum MirrorError {
     },
 }
 
+/// Signs of the mirror image of a vector, and of one about which something turns.
+const POLAR: [f32; 3] = [1.0, -1.0, 1.0];
+const AXIAL: [f32; 3] = [-1.0, 1.0, -1.0];
+
 /// The mirror image in the plane of x and z: a body, and its hinges, go to the one whose name has `left` for `right`.
 /// Inputs are those of [`policy_core::observe_into`] after `normaliser`, and the target.
 ///
@@ -50,8 +54,6 @@ pub fn mirror_of(skeleton: &Skeleton, normaliser: &Normaliser) -> Result<Mirror,
     });
     let partners: Vec<usize> = partners.collect::<Result<_, _>>()?;
 
-    const POLAR: [f32; 3] = [1.0, -1.0, 1.0];
-    const AXIAL: [f32; 3] = [-1.0, 1.0, -1.0];
     let mut inputs = vec![(0, 1.0)];
     let mut vectors = |bodies: std::ops::Range<usize>, signs: &[f32]| {
         let (start, first) = (inputs.len(), bodies.start);
@@ -74,7 +76,16 @@ pub fn mirror_of(skeleton: &Skeleton, normaliser: &Normaliser) -> Result<Mirror,
     }
     let target = inputs.len();
     inputs.extend([(target, 1.0), (target + 1, -1.0)]);
+    Ok(Mirror { inputs: SignedPermutation::new(inputs), actions: mirrored_joints(skeleton)? })
+}
 
+/// The mirror image of an action: a hinge goes to the one whose name has `left` for `right`.
+///
+/// # Errors
+/// When a name is missing on one side, or hinges are no mirror images of each other.
+pub fn mirrored_joints(skeleton: &Skeleton) -> Result<SignedPermutation, MirrorError> {
+    let missing = |found: &str| MirrorError::Missing { found: found.to_owned(), expected: swapped(found) };
+    let bodies = skeleton.bodies();
     let scaling = ActionScaling::from_skeleton(skeleton);
     let actions = skeleton.joints().iter().enumerate().map(|(index, joint)| {
         let partner = skeleton.joint_named(&swapped(&joint.name)).ok_or_else(|| missing(&joint.name))?;
@@ -83,15 +94,14 @@ pub fn mirror_of(skeleton: &Skeleton, normaliser: &Normaliser) -> Result<Mirror,
         let sign = axis.dot(joint.axis).round();
         let close = |a: f32, b: f32| (a - b).abs() < 1e-4;
         let (centre, gain) = (scaling.centre(), scaling.gain());
-        let same = partners[joint.body.index()] == other.body.index()
+        let same = swapped(&bodies[joint.body.index()].name) == bodies[other.body.index()].name
             && axis.distance(sign * joint.axis) < 1e-3
             && close(centre[index], sign * centre[partner.index()])
             && close(gain[index], gain[partner.index()]);
         let hinge = || MirrorError::Hinge { first: joint.name.clone(), second: other.name.clone() };
         same.then_some((partner.index(), sign)).ok_or_else(hinge)
     });
-    let actions = actions.collect::<Result<_, _>>()?;
-    Ok(Mirror { inputs: SignedPermutation::new(inputs), actions: SignedPermutation::new(actions) })
+    Ok(SignedPermutation::new(actions.collect::<Result<_, _>>()?))
 }
 
 /// The name on the other side; the same for what is in the middle.

@@ -32,10 +32,9 @@ pub use exploration::ExplorationConfig;
 pub use graph::{GraphNode, TrainingGraph};
 pub use meetings::MeetingsConfig;
 pub(crate) use meetings::{MET, WALK};
-pub use mirrored::{MirrorError, mirror_of};
+pub use mirrored::{MirrorError, mirror_of, mirrored_joints};
 pub use normalisers::Normalisers;
 pub use randomisation::RandomisationConfig;
-pub(crate) use reset::PLAYED;
 pub use reset::{HandOver, HandOverConfig, InPlayConfig, OutOf, RUNS_MPS, ResetConfig};
 pub use reward::{
     Pace, RewardConfig, RewardTerms, Task, foot_slip_mps, paid_velocity, standing_reward, target_reward,

@@ -19,7 +19,6 @@ mod in_play;
 mod pre_failure;
 
 pub use self::hand_over::HandOver;
-pub(crate) use self::in_play::PLAYED;
 pub(super) use self::in_play::PlayedStarts;
 pub use self::in_play::{InPlayConfig, OutOf, RUNS_MPS};
 pub(super) use self::pre_failure::PreFailureStates;

@@ -8,6 +8,7 @@ use serde::Serialize;
 
 use super::{AverageStep, Lineage, MOST_BYTES, STEP_FILE, Step, TrainStep};
 use crate::average::average;
+use crate::posture::Posture;
 use crate::recipe::Recipe;
 use crate::run::{Existing, Run, RunError, RunFolder, holds_a_run, newest_checkpoint};
 use crate::workspace::{Start, Workspace};
@@ -110,7 +111,8 @@ fn average_runs(step: &AverageStep, workspace: &Workspace, existing: Existing) -
         return check_stamp(&path, &stamp);
     }
     let checkpoints = step.of.iter().map(|name| workspace.required(name)).collect::<Result<Vec<_>>>()?;
-    let mean = average(&checkpoints, step.averaging())?;
+    let posture = Posture::of(workspace.model.skeleton(), &step.posture)?;
+    let mean = average(&checkpoints, step.averaging(posture.as_ref()))?;
     let folder =
         RunFolder::open(path, if existing == Existing::Resume { Existing::Refuse } else { existing })?;
     folder.clear()?;

@@ -85,6 +85,9 @@ pub struct PlannedPolicy {
     /// Name of its catching variant.
     #[serde(default)]
     pub catching: Option<String>,
+    /// Name of its rising variant.
+    #[serde(default)]
+    pub rising: Option<String>,
 }
 
 impl PackPlan {
@@ -114,9 +117,12 @@ impl PackPlan {
                 stopping,
                 turning,
                 catching,
+                rising,
                 ..
             } = policy;
-            for variant in [rough_ground, agile, steady, resting, starting, stopping, turning, catching] {
+            for variant in
+                [rough_ground, agile, steady, resting, starting, stopping, turning, catching, rising]
+            {
                 *variant = variant.take().filter(|name| trained(name));
             }
         }

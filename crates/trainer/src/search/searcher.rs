@@ -1,5 +1,7 @@
 //! The course of a search: which weights are next, and what was found.
 
+use std::collections::BTreeMap;
+
 use anyhow::{Error, Result};
 use evaluation::Section;
 use serde::{Deserialize, Serialize};
@@ -7,15 +9,25 @@ use serde_json::Value;
 
 use super::{Cma, Search};
 
-/// Weights are rounded to thousandths before they are measured: what is found can then be written down.
+/// Weights and offsets are rounded to thousandths before they are measured: what is found can then be written down.
 const STEPS_PER_UNIT: f64 = 1000.0;
 
-/// Weights that were tried.
+/// What is tried.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct Trial {
+pub struct Candidate {
     /// Weight of each policy.
     pub weights: Vec<f64>,
+    /// Offset of each joint of the posture, radians.
+    #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
+    pub posture: BTreeMap<String, f64>,
+}
+
+/// What was tried.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Trial {
+    /// Weights and posture.
+    #[serde(flatten)]
+    pub candidate: Candidate,
     /// What they cost; sections that were not measured cost what they did in the best trial then.
     pub cost: f64,
     /// The number of each aim; missing at the end where the trial was given up.
@@ -26,22 +38,24 @@ pub struct Trial {
 #[derive(Clone, Debug)]
 pub struct Searcher {
     search: Search,
-    start: Vec<f64>,
+    start: Candidate,
     cma: Cma,
     best: Option<Trial>,
     tries: usize,
 }
 
 impl Searcher {
-    /// Begins at the weights of the search.
+    /// Begins at the weights and the posture of the search.
     #[must_use]
     pub fn new(search: Search, seed: u64) -> Self {
-        let start = match search.weights.is_empty() {
+        let weights = match search.weights.is_empty() {
             true => vec![1.0 / search.of.len() as f64; search.of.len()],
             false => search.weights.clone(),
         };
         // Weights add up to 1, so the first one follows from the others.
-        let cma = Cma::new(start[1..].to_vec(), search.spread, seed);
+        let mean = weights[1..].iter().chain(search.posture.values()).copied().collect();
+        let cma = Cma::new(mean, search.spread, seed);
+        let start = Candidate { weights, posture: search.posture.clone() };
         Self { search, start, cma, best: None, tries: 0 }
     }
 
@@ -57,16 +71,15 @@ impl Searcher {
         self.tries
     }
 
-    /// Tries the next weights. `measure` gives the report of a section with them.
+    /// Tries the next candidate. `measure` gives the report of a section with it.
     ///
     /// # Errors
     /// When `measure` fails, or a report lacks the number of an aim.
-    pub fn go_on(&mut self, mut measure: impl FnMut(&[f64], Section) -> Result<Value>) -> Result<Trial> {
+    pub fn go_on(&mut self, mut measure: impl FnMut(&Candidate, Section) -> Result<Value>) -> Result<Trial> {
         // Asked of a copy: what fails leaves the search as it was.
         let mut cma = self.cma.clone();
-        let weights = self.weights(&cma.ask());
-        let moved = weights.iter().zip(&self.start).map(|(now, then)| (now - then).abs());
-        let pull = self.search.pull * moved.sum::<f64>();
+        let candidate = self.candidate(&cma.ask());
+        let pull = self.search.pull * candidate.apart(&self.start);
         let mut numbers = vec![None; self.search.aims.len()];
         let mut costs = vec![None; self.search.aims.len()];
         let known = |costs: &[Option<f64>]| pull + costs.iter().flatten().sum::<f64>();
@@ -74,7 +87,7 @@ impl Searcher {
             if self.best.as_ref().is_some_and(|best| known(&costs) > best.cost) {
                 break;
             }
-            let report = measure(&weights, section)?;
+            let report = measure(&candidate, section)?;
             for (index, aim) in self.search.aims.iter().enumerate() {
                 if aim.section == section.name() {
                     let number = aim.find(&report).map_err(Error::msg)?;
@@ -88,7 +101,7 @@ impl Searcher {
         };
         let unknown = (0..costs.len()).filter(|index| costs[*index].is_none()).filter_map(as_best);
         let cost = known(&costs) + unknown.sum::<f64>();
-        let trial = Trial { weights, cost, measured: numbers };
+        let trial = Trial { candidate, cost, measured: numbers };
         cma.tell(cost);
         self.cma = cma;
         self.keep(&trial);
@@ -100,9 +113,9 @@ impl Searcher {
     /// # Errors
     /// When it is not the one that comes next: what was expected, and what was found.
     pub fn replay(&mut self, trial: &Trial) -> std::result::Result<(), [String; 2]> {
-        let expected = self.weights(&self.cma.clone().ask());
-        if trial.weights != expected || trial.measured.len() != self.search.aims.len() {
-            return Err([format!("{expected:?}"), format!("{:?}", trial.weights)]);
+        let expected = self.candidate(&self.cma.clone().ask());
+        if trial.candidate != expected || trial.measured.len() != self.search.aims.len() {
+            return Err([expected.to_string(), trial.candidate.to_string()]);
         }
         self.cma.ask();
         self.cma.tell(trial.cost);
@@ -117,12 +130,35 @@ impl Searcher {
         }
     }
 
-    /// The weights of a candidate.
-    fn weights(&self, candidate: &[f64]) -> Vec<f64> {
-        let round = |weight: f64| (weight * STEPS_PER_UNIT).round() / STEPS_PER_UNIT;
-        let others: Vec<f64> = candidate.iter().map(|weight| round(*weight)).collect();
+    /// The candidate of the numbers that were drawn.
+    fn candidate(&self, drawn: &[f64]) -> Candidate {
+        let round = |number: f64| (number * STEPS_PER_UNIT).round() / STEPS_PER_UNIT;
+        let drawn: Vec<f64> = drawn.iter().map(|number| round(*number)).collect();
+        let (others, offsets) = drawn.split_at(self.start.weights.len() - 1);
         let first = round(1.0 - others.iter().sum::<f64>());
-        std::iter::once(first).chain(others).collect()
+        Candidate {
+            weights: std::iter::once(first).chain(others.iter().copied()).collect(),
+            posture: self.start.posture.keys().cloned().zip(offsets.iter().copied()).collect(),
+        }
+    }
+}
+
+impl std::fmt::Display for Candidate {
+    /// As `trainer average` takes them.
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        let weights: Vec<String> = self.weights.iter().map(f64::to_string).collect();
+        write!(f, "weights {}", weights.join(","))?;
+        let posture: Vec<String> =
+            self.posture.iter().map(|(joint, offset)| format!("{joint}={offset}")).collect();
+        if posture.is_empty() { Ok(()) } else { write!(f, ", posture {}", posture.join(",")) }
+    }
+}
+
+impl Candidate {
+    /// Sum of the differences between the numbers of two candidates of one search.
+    fn apart(&self, other: &Self) -> f64 {
+        let numbers = |of: &Self| of.weights.iter().chain(of.posture.values()).copied().collect::<Vec<f64>>();
+        numbers(self).iter().zip(numbers(other)).map(|(a, b)| (a - b).abs()).sum()
     }
 }
 
@@ -140,8 +176,8 @@ mod tests {
     }
 
     /// A made-up evaluation: the pose is best at weights of 0.5, -0.2, 0.7, and pushes are borne there.
-    fn report(weights: &[f64], section: Section) -> Result<Value> {
-        let off: f64 = weights.iter().zip([0.5, -0.2, 0.7]).map(|(w, best)| (w - best).abs()).sum();
+    fn report(candidate: &Candidate, section: Section) -> Result<Value> {
+        let off: f64 = candidate.weights.iter().zip([0.5, -0.2, 0.7]).map(|(w, best)| (w - best).abs()).sum();
         Ok(match section {
             Section::Motion => {
                 json!({ "pose_error_m": { "run": 0.1 + 0.1 * off }, "motion": { "run": { "speed_mps": 2.5 } } })
@@ -155,18 +191,40 @@ mod tests {
         let mut searcher = searcher(1);
         let mut measured = [0, 0];
         for _ in 0..600 {
-            let trial = searcher.go_on(|weights, section| {
+            let trial = searcher.go_on(|candidate, section| {
                 measured[usize::from(section == Section::Pushes)] += 1;
-                report(weights, section)
+                report(candidate, section)
             });
-            let sum: f64 = trial.unwrap().weights.iter().sum();
+            let sum: f64 = trial.unwrap().candidate.weights.iter().sum();
             assert!((sum - 1.0).abs() < 1e-9, "{sum}");
         }
         let best = searcher.best().unwrap();
         assert!(best.cost < 0.1, "{best:?}");
-        assert!((best.weights[1] + 0.2).abs() < 0.02, "{best:?}");
+        assert!((best.candidate.weights[1] + 0.2).abs() < 0.02, "{best:?}");
         // What is worse already is not measured further.
         assert!(measured[0] == 600 && measured[1] < 500, "{measured:?}");
+    }
+
+    #[test]
+    fn a_posture_is_searched_beside_the_weights() {
+        let text =
+            TEXT.replacen("gaits", "posture = { abdomen_y = 0.1, neck_y = 0.0 }\npull = 1.0\ngaits", 1);
+        let mut searcher = Searcher::new(Search::parse(Path::new("x"), &text).unwrap(), 5);
+        let leaning = |candidate: &Candidate, section| {
+            let mut report = report(candidate, section)?;
+            if section == Section::Motion {
+                let off = (candidate.posture["abdomen_y"] - 0.15).abs();
+                report["pose_error_m"]["run"] = json!(0.1 + off);
+            }
+            Ok(report)
+        };
+        let first = searcher.go_on(leaning).unwrap();
+        let line = serde_json::to_string(&first).unwrap();
+        assert_eq!(serde_json::from_str::<Trial>(&line).unwrap(), first, "{line}");
+        (0..600).for_each(|_| _ = searcher.go_on(leaning).unwrap());
+        let best = searcher.best().unwrap();
+        assert!((best.candidate.posture["abdomen_y"] - 0.15).abs() < 0.01, "{best:?}");
+        assert!(best.cost < 0.3 * first.cost, "{first:?} {best:?}");
     }
 
     #[test]

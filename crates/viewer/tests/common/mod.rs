@@ -144,6 +144,7 @@ pub fn quadruped() -> CharacterPack {
         stopping: None,
         turning: None,
         catching: None,
+        rising: None,
         origin: "made up".into(),
     };
     let manifest = Manifest {

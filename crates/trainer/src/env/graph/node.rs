@@ -85,6 +85,7 @@ pub(super) fn policy_graph(
         stopping: None,
         turning: None,
         catching: None,
+        rising: None,
     };
     let policies = vec![policy; nodes.len()];
     PolicyGraph::from_parts(nodes.iter().map(known).collect(), &edges, paths, &policies)

@@ -15,32 +15,6 @@ mod config;
 
 pub use config::{InPlayConfig, OutOf};
 
-/// The gaits that lead up to a start, their variants, and a skill that may have ended just before it.
-pub(crate) const PLAYED: &[&str] = &[
-    "idle",
-    "walk",
-    "jog",
-    "run",
-    "crouch",
-    "zombie_walk",
-    "strafe",
-    "idle_agile",
-    "walk_agile",
-    "jog_agile",
-    "run_agile",
-    "crouch_agile",
-    "idle_steady",
-    "walk_steady",
-    "jog_steady",
-    "run_steady",
-    "walk_start",
-    "walk_turn",
-    "walk_catch",
-    "run_catch",
-    "idle_stop",
-    "roll",
-];
-
 /// Share of the walks that begin with a push and are half-way between standing and walking, as half a stick has it.
 const HALF_SHARE: f32 = 0.25;
 
@@ -52,6 +26,9 @@ const ROLL_SHARE: f32 = 0.25;
 
 /// Longest time on the way, seconds.
 const WAY_SECS: f32 = 3.0;
+
+/// Time on the way down to a low gait and in it, seconds: the way takes 4 s.
+const LOW_SECS: [f32; 2] = [2.0, 6.0];
 
 /// Time between two directions on the way, seconds.
 const DIRECTION_SECS: [f32; 2] = [0.5, 2.0];
@@ -159,12 +136,19 @@ impl Env {
         let nodes = config.out_of.nodes();
         let out_of = graph.node_named(nodes[self.rng.index(nodes.len())]).unwrap_or(stand);
         let shortest = if strides { STRIDE_SECS } else { 0.3 };
-        let way_secs = if out_of == stand { 0.0 } else { self.rng.range(shortest, WAY_SECS) };
+        let low = config.out_of == OutOf::Low;
+        let way_secs = match out_of == stand {
+            true => 0.0,
+            false if low => self.rng.range(LOW_SECS[0], LOW_SECS[1]),
+            false => self.rng.range(shortest, WAY_SECS),
+        };
         let goes = way_secs > 0.0 && self.rng.chance(0.5);
         // Once it is as slow as that, and on its way to a stand.
         let (rest_secs, below_mps) = match config.maximum_speed_mps {
             Some(most) if goes => (0.0, Some(most)),
             Some(most) => (self.rng.range(0.0, REST_SECS), Some(most)),
+            // Told to stand, it has turned back half-way down.
+            None if low => (self.rng.range(0.0, LET_GO_SECS), None),
             None if context.config.command.speed_mps == 0.0 => {
                 (self.rng.range(0.0, if strides { STOPS_SECS } else { LET_GO_SECS }), None)
             }

@@ -96,6 +96,16 @@ fn a_skill_out_of_a_run_starts_as_a_foot_comes_down_and_tracks_its_clip() {
 }
 
 #[test]
+fn a_variant_that_rises_starts_out_of_a_crawl_and_on_the_way_down() {
+    let in_play = InPlayConfig { share: 1.0, maximum_speed_mps: None, out_of: OutOf::Low };
+    let mut heights = Vec::new();
+    start_each(EnvironmentConfig::default(), in_play, |env| heights.push(env.state.root_height()));
+    assert!(heights.len() >= 12, "{heights:?}");
+    assert!(heights.iter().any(|height| *height < 0.4), "in a crawl: {heights:?}");
+    assert!(heights.iter().any(|height| *height > 0.5), "on the way down: {heights:?}");
+}
+
+#[test]
 fn a_variant_that_catches_starts_in_the_middle_of_a_push_and_is_to_go_on() {
     let mut config = EnvironmentConfig::default();
     (config.command.speed_mps, config.command.stick_share, config.command.stop_share) = (1.5, 1.0, 0.0);

@@ -2,6 +2,50 @@
 
 use serde::{Deserialize, Serialize};
 
+/// What acts until a start, but for [`OutOf::Low`].
+const PLAYED: &[&str] = &[
+    "idle",
+    "walk",
+    "jog",
+    "run",
+    "crouch",
+    "zombie_walk",
+    "strafe",
+    "idle_agile",
+    "walk_agile",
+    "jog_agile",
+    "run_agile",
+    "crouch_agile",
+    "idle_steady",
+    "walk_steady",
+    "jog_steady",
+    "run_steady",
+    "walk_start",
+    "walk_turn",
+    "walk_catch",
+    "run_catch",
+    "idle_stop",
+    "roll",
+];
+
+/// What acts until one of those.
+const PLAYED_LOW: &[&str] = &[
+    "idle",
+    "walk",
+    "crouch",
+    "crawl",
+    "idle_agile",
+    "walk_agile",
+    "crouch_agile",
+    "idle_steady",
+    "walk_steady",
+    "walk_start",
+    "walk_turn",
+    "idle_stop",
+    "crouch_rest",
+    "crawl_rest",
+];
+
 /// Nodes for [`OutOf::Anything`]; the first one stands.
 const OUT_OF: [&str; 14] = [
     "idle",
@@ -28,6 +72,9 @@ const PUSHED: [&str; 5] = ["walk", "jog", "run", "run", "run"];
 
 /// Nodes for [`OutOf::Run`].
 const RUNS: [&str; 3] = ["jog", "jog", "run"];
+
+/// Nodes for [`OutOf::Low`].
+const LOW: [&str; 1] = ["crawl"];
 
 /// Starts where a game starts an episodic skill, or where a variant begins to act.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
@@ -60,6 +107,8 @@ pub enum OutOf {
     /// It walks, jogs or runs, half of the time straight ahead, and is being pushed by up to `randomisation.push_newton`: for a variant that
     /// catches it. It is to go on.
     Push,
+    /// It crawls, rests there, or is on its way down, for a variant that rises.
+    Low,
 }
 
 impl OutOf {
@@ -71,7 +120,13 @@ impl OutOf {
             Self::Stride => &STRIDES,
             Self::Run => &RUNS,
             Self::Push => &PUSHED,
+            Self::Low => &LOW,
         }
+    }
+
+    /// The gaits that lead up to the start, their variants, and a skill that may have ended just before it.
+    pub(crate) fn played(self) -> &'static [&'static str] {
+        if self == Self::Low { PLAYED_LOW } else { PLAYED }
     }
 
     /// Whether it starts in the middle of a stride.
