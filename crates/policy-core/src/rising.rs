@@ -50,7 +50,7 @@ pub(crate) fn rising_variant(graph: &PolicyGraph, position: GraphPosition) -> Op
 }
 
 /// Share of the way down to a low gait from which on a character goes down for good: its hands are already on their way to the ground.
-const COMMITS: f32 = 0.35;
+const COMMITS: f32 = 0.55;
 
 /// Where a character goes that is on its way down an edge that is only crossed, to a gait with a rising variant: to the end of it, once it has
 /// gone so far, whatever is asked of it. It rises from there.
