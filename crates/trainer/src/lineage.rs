@@ -94,7 +94,7 @@ pub struct AverageStep {
     /// Skill whose policy a run gives that trained several skills together, where the first one trained a skill alone.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub policy: Option<String>,
-    /// Offsets of joint targets that the mean gets, radians, as [`Posture`](crate::posture::Posture) has them.
+    /// Offsets of joint targets that the mean gets, radians, as [`Posture`] has them.
     #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
     pub posture: BTreeMap<String, f64>,
 }
