@@ -135,13 +135,12 @@ impl Env {
         let skeleton = pack.skeleton();
         let nodes = config.out_of.nodes();
         let out_of = graph.node_named(nodes[self.rng.index(nodes.len())]).unwrap_or(stand);
-        let shortest = if strides { STRIDE_SECS } else { 0.3 };
         let low = config.out_of == OutOf::Low;
-        let way_secs = match out_of == stand {
-            true => 0.0,
-            false if low => self.rng.range(LOW_SECS[0], LOW_SECS[1]),
-            false => self.rng.range(shortest, WAY_SECS),
+        let [shortest, longest] = match low {
+            true => LOW_SECS,
+            false => [if strides { STRIDE_SECS } else { 0.3 }, WAY_SECS],
         };
+        let way_secs = if out_of == stand { 0.0 } else { self.rng.range(shortest, longest) };
         let goes = way_secs > 0.0 && self.rng.chance(0.5);
         // Once it is as slow as that, and on its way to a stand.
         let (rest_secs, below_mps) = match config.maximum_speed_mps {
