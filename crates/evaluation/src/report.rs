@@ -189,17 +189,15 @@ impl Evaluation {
     }
 
     fn measure_upright(&mut self, model: &Model, pack: &Arc<CharacterPack>, effort: &Effort) {
-        for (index, node) in pack.graph().nodes().iter().enumerate().filter(|(_, n)| n.fall_height.is_some())
-        {
-            let upright = measure_upright(model, pack, NodeId::new(index), effort.characters);
+        for (id, node) in pack.graph().originals().filter(|(_, n)| n.fall_height.is_some()) {
+            let upright = measure_upright(model, pack, id, effort.characters);
             self.upright.insert(node.name.clone(), upright);
         }
     }
 
     fn measure_push(&mut self, model: &Model, pack: &Arc<CharacterPack>, effort: &Effort) {
-        for (index, node) in pack.graph().nodes().iter().enumerate().filter(|(_, n)| n.fall_height.is_some())
-        {
-            let push = |direction| measure_push(model, pack, NodeId::new(index), direction, effort.pushed);
+        for (id, node) in pack.graph().originals().filter(|(_, n)| n.fall_height.is_some()) {
+            let push = |direction| measure_push(model, pack, id, direction, effort.pushed);
             let report = PushReport { forward_newton: push(Vec3::X), sideways_newton: push(Vec3::Y) };
             self.push.insert(node.name.clone(), report);
         }

@@ -80,8 +80,7 @@ pub fn fall_height(graph: &PolicyGraph, position: GraphPosition) -> Option<f32> 
 /// True when the root leans over far, where by its fall height a character stands as high as anywhere on the graph, or nearly so.
 #[must_use]
 pub(crate) fn lies(graph: &PolicyGraph, limit: Option<f32>, state: &CharacterState) -> bool {
-    let greatest = graph.nodes().iter().filter_map(|node| node.fall_height).fold(0.0, f32::max);
-    let upright = limit.is_some_and(|limit| limit >= UPRIGHT_SHARE * greatest);
+    let upright = limit.is_some_and(|limit| limit >= UPRIGHT_SHARE * graph.greatest_fall_height());
     upright && (state.root().rotation * Vec3::Z).z < LYING_COSINE
 }
 

@@ -101,6 +101,7 @@ pub struct PolicyGraph {
     paths: Vec<Path>,
     routes: RouteTable,
     strafing: Option<NodeId>,
+    greatest_fall_height: f32,
 }
 
 /// Why a graph can't be made.
@@ -200,7 +201,9 @@ impl PolicyGraph {
         let routes = RouteTable::new(nodes.len(), &checked);
         let paths = paths.into_iter().map(|(name, nodes)| Path { name, nodes }).collect();
         let strafing = nodes.iter().position(|node| node.strafes).map(NodeId::new);
-        let graph = Self { nodes, edges: checked, paths, routes, strafing };
+        let mut graph = Self { nodes, edges: checked, paths, routes, strafing, greatest_fall_height: 0.0 };
+        let heights = graph.originals().filter_map(|(_, node)| node.fall_height);
+        graph.greatest_fall_height = heights.fold(0.0, f32::max);
         for path in &graph.paths {
             graph.check_path(path)?;
         }
@@ -291,6 +294,12 @@ impl PolicyGraph {
     /// The first node that strafes.
     pub(crate) fn strafing(&self) -> Option<NodeId> {
         self.strafing
+    }
+
+    /// The greatest fall height of a node that is no variant, metres; 0 where none has one. A rising variant has one of its own, which is that of
+    /// no gait.
+    pub(crate) fn greatest_fall_height(&self) -> f32 {
+        self.greatest_fall_height
     }
 
     /// The first node that is a gait that stands.

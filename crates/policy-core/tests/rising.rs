@@ -115,6 +115,21 @@ fn half_way_down_it_goes_down_first() {
 }
 
 #[test]
+fn the_height_of_the_variant_makes_no_gait_a_low_one() {
+    // 0.5 is less than 0.75 of 0.8.
+    let mut manifest = common::gaits(|_| ());
+    manifest.policies[policy("crawl")].rising = Some(RISES.0.into());
+    manifest.policies[policy(RISES.0)].fall_height = Some(0.8);
+    let pack = Arc::new(CharacterPack::from_parts(manifest, common::tensors(0.0)).unwrap());
+    let config = ControllerConfig { auto_recover: false, ..ControllerConfig::default() };
+    let mut controller = Controller::with_config(pack, config);
+    let mut lies = at(0.7);
+    lies.bodies[0].rotation = glam::Quat::from_rotation_y(1.5);
+    (0..60).for_each(|_| _ = controller.tick(&lies, &Command::default(), DT));
+    assert!(controller.report().fallen, "it lies on something high");
+}
+
+#[test]
 fn a_saved_state_goes_on_with_its_rise() {
     let mut controller = crawling(|_| ());
     (0..2).for_each(|_| _ = tick(&mut controller, 0.3, "walk"));
