@@ -7,7 +7,7 @@ use super::encounters::{RACE_SECS, nominal_secs};
 use super::player::STRAIGHT_COORDINATES;
 use super::press::bound_buttons;
 use super::response::{STOP_SECS, WAYS};
-use super::stress::{CASE_COUNT, GET_UP_SECS, Grounds, PadKind, nominal_trials};
+use super::stress::{Cases, GET_UP_SECS, Grounds, PadKind, nominal_trials};
 use super::trial::Gaits;
 
 /// How much is measured.
@@ -57,6 +57,8 @@ pub struct Effort {
     pub gaits: Gaits,
     /// The uneven grounds on which characters roam and get up.
     pub grounds: Grounds,
+    /// The bodies and worlds that differ from training.
+    pub cases: Cases,
 }
 
 impl Effort {
@@ -84,6 +86,7 @@ impl Effort {
         races: 10,
         gaits: Gaits::ALL,
         grounds: Grounds::ALL,
+        cases: Cases::ALL,
     };
 
     /// Less than three minutes on two idle cores, for a first look.
@@ -110,6 +113,7 @@ impl Effort {
         races: 1,
         gaits: Gaits::ALL,
         grounds: Grounds::ALL,
+        cases: Cases::ALL,
     };
 
     /// The same with so many characters in every measure, and as many tries of each encounter; drops, seconds and runs over the course
@@ -129,6 +133,17 @@ impl Effort {
             pad_players: count,
             roamers: count,
             encounters: count,
+            ..self
+        }
+    }
+
+    /// The same for these gaits, grounds and cases alone; where there are none of a kind, for all of that kind.
+    #[must_use]
+    pub fn only(self, gaits: &[Gaits], grounds: &[Grounds], cases: &[Cases]) -> Self {
+        Self {
+            gaits: gaits.iter().copied().reduce(Gaits::and).unwrap_or(self.gaits),
+            grounds: grounds.iter().copied().reduce(Grounds::and).unwrap_or(self.grounds),
+            cases: cases.iter().copied().reduce(Cases::and).unwrap_or(self.cases),
             ..self
         }
     }
@@ -164,7 +179,7 @@ impl Effort {
             Section::RandomPad => of(PadKind::ALL.len() * self.pad_players, self.pad_secs),
             Section::Terrain => roamed * self.grounds.count() as f32,
             Section::GetUp => of(self.grounds.count() * self.drops_uneven, GET_UP_SECS),
-            Section::Robustness => roamed * CASE_COUNT as f32,
+            Section::Robustness => roamed * self.cases.count() as f32,
             Section::Encounters => nominal_secs(self),
             Section::Race => of(self.races, RACE_SECS),
             Section::Pushes => {

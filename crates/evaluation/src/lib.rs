@@ -4,6 +4,7 @@
 //! [`strip`] draws motions beside their clips, [`maps`] draws policies by their principal components, and [`compare`] has
 //! the cost of a control step. Nothing here learns.
 
+mod chosen;
 pub mod compare;
 mod effort;
 pub mod encounters;
@@ -32,6 +33,7 @@ mod table;
 pub mod trial;
 mod upright;
 
+pub use chosen::{Chosen, Named};
 pub use effort::Effort;
 pub use error::EvaluationError;
 pub use eval_character::{EvalCharacter, Wanderer};

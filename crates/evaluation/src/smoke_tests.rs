@@ -13,7 +13,7 @@ use policy_core::training::{Layer, Normaliser, PackTensors};
 use policy_core::{CharacterPack, ControllerConfig, Mlp, Skeleton};
 use random::Rng;
 
-use super::stress::Grounds;
+use super::stress::{Cases, Grounds};
 use super::trial::Gaits;
 use super::{Effort, EvalCharacter, Evaluation, PlayerReport, Progress, Section, evaluate, table};
 
@@ -179,6 +179,16 @@ fn some_grounds_are_measured_as_with_all_of_them_and_others_are_not() {
     assert!(some.terrain.keys().eq(["steps_5cm"]), "{:?}", some.terrain.keys());
     assert_eq!(some.terrain["steps_5cm"], all.terrain["steps_5cm"]);
     assert_eq!(all.terrain.len(), 4);
+}
+
+#[test]
+fn some_cases_are_measured_as_with_all_of_them_and_others_are_not() {
+    let effort = TINY.only(&[], &[], &[Cases::from_name("strength_x0.8").unwrap()]);
+    let some = measured(Engine::Mujoco, false, &effort, &[Section::Robustness]).player;
+    let all = measured(Engine::Mujoco, false, &TINY, &[Section::Robustness]).player;
+    assert!(some.robustness.keys().eq(["strength_x0.8"]), "{:?}", some.robustness.keys());
+    assert_eq!(some.robustness["strength_x0.8"], all.robustness["strength_x0.8"]);
+    assert_eq!(all.robustness.len(), 14);
 }
 
 #[test]

@@ -7,9 +7,9 @@
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
-use evaluation::Section;
-use evaluation::stress::Grounds;
-use evaluation::trial::Gaits;
+use evaluation::stress::{CaseList, GroundList};
+use evaluation::trial::GaitList;
+use evaluation::{Chosen, Named, Section};
 use files::{quoted, read_text_bounded};
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
@@ -55,6 +55,9 @@ pub struct Search {
     /// Grounds to measure, as `trainer evaluate --grounds`; all by default.
     #[serde(default)]
     pub grounds: Vec<String>,
+    /// Bodies and worlds that differ from training to measure, as `trainer evaluate --cases`; all by default.
+    #[serde(default)]
+    pub cases: Vec<String>,
     /// Characters in every measure, as `trainer evaluate --characters`.
     #[serde(default)]
     pub characters: Option<u16>,
@@ -163,6 +166,20 @@ pub enum SearchError {
     },
 }
 
+/// Field, what was expected and what was found.
+type Wrong = (String, String, String);
+
+/// Checks the names of a field.
+fn check_names<L: Named>(field: &str, names: &[String]) -> Result<(), Wrong> {
+    match names.iter().find(|name| Chosen::<L>::from_name(name).is_none()) {
+        Some(name) => {
+            let known = Chosen::<L>::names().join(", ");
+            Err((field.to_owned(), format!("some of {known}"), name.clone()))
+        }
+        None => Ok(()),
+    }
+}
+
 impl Search {
     /// Reads and checks a search.
     ///
@@ -181,7 +198,7 @@ impl Search {
     pub fn parse(path: &Path, text: &str) -> Result<Self, SearchError> {
         let search: Self = toml::from_str(text)
             .map_err(|e| SearchError::Toml { path: path.to_owned(), message: quoted(&e.to_string()) })?;
-        let wrong = |(field, expected, found): (String, String, String)| SearchError::Field {
+        let wrong = |(field, expected, found): Wrong| SearchError::Field {
             path: path.to_owned(),
             field,
             expected,
@@ -191,8 +208,7 @@ impl Search {
         Ok(search)
     }
 
-    /// Field, what was expected and what was found.
-    fn check(&self) -> Result<(), (String, String, String)> {
+    fn check(&self) -> Result<(), Wrong> {
         let err =
             |field: &str, expected: &str, found: String| Err((field.to_owned(), expected.to_owned(), found));
         if let Err([expected, found]) = self.averaging(&self.weights, None).check(self.of.len()) {
@@ -207,12 +223,9 @@ impl Search {
         if self.characters == Some(0) {
             return err("characters", "at least one", "0".into());
         }
-        if let Some(gait) = self.gaits.iter().find(|gait| Gaits::from_name(gait).is_none()) {
-            return err("gaits", &format!("some of {}", Gaits::names().join(", ")), gait.clone());
-        }
-        if let Some(ground) = self.grounds.iter().find(|ground| Grounds::from_name(ground).is_none()) {
-            return err("grounds", &format!("some of {}", Grounds::names().join(", ")), ground.clone());
-        }
+        check_names::<GaitList>("gaits", &self.gaits)?;
+        check_names::<GroundList>("grounds", &self.grounds)?;
+        check_names::<CaseList>("cases", &self.cases)?;
         if self.aims.is_empty() {
             return err("aims", "at least one", "none".into());
         }
@@ -320,6 +333,7 @@ aims = [
             ("gaits = [\"run\"]", "spread = 0.0", "spread: expected a number above 0"),
             ("gaits = [\"run\"]", "pull = -1.0", "pull: expected a number from 0 on"),
             ("gaits = [\"run\"]", "grounds = [\"moon\"]", "grounds: expected some of"),
+            ("gaits = [\"run\"]", "cases = [\"drunk\"]", "cases: expected some of"),
             ("gaits = [\"run\"]", "stride = 1.0", "unknown field"),
             ("\"pushes\"", "\"kisses\"", "aims[1].section: expected one of paths"),
             ("scale = 50.0", "scale = 0.0", "aims[1].scale"),

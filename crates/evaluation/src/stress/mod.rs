@@ -14,9 +14,8 @@ pub use get_up::{GetUpReport, measure_get_up_on_terrain};
 pub use pushes::{SidesReport, measure_pushes};
 pub use random_pad::{PadKind, RandomPadReport, measure_random_pad};
 pub use roam::FallReport;
-pub use robustness::measure_robustness;
-pub use terrain::{Grounds, measure_terrain};
+pub use robustness::{CaseList, Cases, measure_robustness};
+pub use terrain::{GroundList, Grounds, measure_terrain};
 
 pub(super) use get_up::NOMINAL_SECS as GET_UP_SECS;
 pub(super) use pushes::nominal_trials;
-pub(super) use robustness::CASE_COUNT;

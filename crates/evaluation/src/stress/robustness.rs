@@ -7,6 +7,7 @@ use policy_core::contract::Settings;
 
 use super::roam::{FallReport, roam};
 use crate::Rig;
+use crate::chosen::{Chosen, Named};
 
 /// Standard deviation of the noise on actions.
 const ACTION_NOISE: f32 = 0.1;
@@ -41,6 +42,19 @@ const CASES: [(&str, Change); 14] = [
     ("load_5kg", Change::Load(5.0)),
 ];
 
+/// The cases of a body or a world that differ from training.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct CaseList;
+
+impl Named for CaseList {
+    fn names() -> Vec<&'static str> {
+        CASES.map(|(name, _)| name).into()
+    }
+}
+
+/// Some of these cases.
+pub type Cases = Chosen<CaseList>;
+
 /// Falls by case, and in it by gait.
 ///
 /// # Errors
@@ -51,7 +65,7 @@ pub fn measure_robustness(
     let seeds: Vec<u64> = (0..rig.effort.roamers as u64).collect();
     let secs = rig.effort.roam_secs;
     let mut cases = BTreeMap::new();
-    for (name, change) in CASES {
+    for (name, change) in CASES.into_iter().filter(|(name, _)| rig.effort.cases.contains(name)) {
         let model = changed(rig.model, change)?;
         let measure = |gait: &_| {
             rig.each(&seeds, secs, |seed| {
@@ -74,9 +88,6 @@ pub fn measure_robustness(
     }
     Ok(cases)
 }
-
-/// Trials for one gait.
-pub(crate) const CASE_COUNT: usize = CASES.len();
 
 fn changed(model: &Model, change: Change) -> Result<Model, ModelError> {
     match change {

@@ -7,6 +7,7 @@ use physics_bridge::Terrain;
 
 use super::roam::{FallReport, roam};
 use crate::Rig;
+use crate::chosen::{Chosen, Named};
 
 /// Places the hills.
 const SEED: u32 = 7;
@@ -19,47 +20,23 @@ const GROUNDS: [(&str, Terrain); 4] = [
     ("steps_10cm", Terrain::Steps { rise_m: 0.10, run_m: 0.8, count: 6 }),
 ];
 
-/// Some of the uneven grounds.
+/// The uneven grounds.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Grounds(u8);
+pub struct GroundList;
+
+impl Named for GroundList {
+    fn names() -> Vec<&'static str> {
+        GROUNDS.map(|(name, _)| name).into()
+    }
+}
+
+/// Some of the uneven grounds.
+pub type Grounds = Chosen<GroundList>;
 
 impl Grounds {
-    /// None of them.
-    pub const NONE: Grounds = Grounds(0);
-    /// All of them.
-    pub const ALL: Grounds = Grounds((1 << GROUNDS.len()) - 1);
-
-    /// The names of all grounds.
-    #[must_use]
-    pub fn names() -> [&'static str; GROUNDS.len()] {
-        GROUNDS.map(|(name, _)| name)
-    }
-
-    /// The ground called `name` alone; `None` when there is none of that name.
-    #[must_use]
-    pub fn from_name(name: &str) -> Option<Grounds> {
-        Grounds::names().iter().position(|known| *known == name).map(|index| Grounds(1 << index))
-    }
-
-    /// The grounds of either.
-    #[must_use]
-    pub const fn and(self, other: Grounds) -> Grounds {
-        Grounds(self.0 | other.0)
-    }
-
-    /// How many there are.
-    #[must_use]
-    pub const fn count(self) -> usize {
-        self.0.count_ones() as usize
-    }
-
     /// Names and terrains.
     pub(super) fn terrains(self) -> impl Iterator<Item = (&'static str, Terrain)> {
-        GROUNDS
-            .into_iter()
-            .enumerate()
-            .filter(move |(index, _)| self.0 >> index & 1 == 1)
-            .map(|(_, ground)| ground)
+        GROUNDS.into_iter().filter(move |(name, _)| self.contains(name))
     }
 }
 

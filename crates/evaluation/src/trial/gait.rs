@@ -3,6 +3,8 @@
 use policy_core::bindings::{Bindings, Control};
 use policy_core::{Buttons, CharacterPack, GamepadState, NodeId};
 
+use crate::chosen::{Chosen, Named};
+
 /// A way to hold the pad.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Gait {
@@ -37,40 +39,20 @@ const GAITS: [Entry; 10] = [
     ("strafe", "strafe", 1.0, 1.0),
 ];
 
-/// Some of the gaits that can be measured, whether a pack has them or not.
+/// The gaits that can be measured, whether a pack has them or not.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Gaits(u16);
+pub struct GaitList;
+
+impl Named for GaitList {
+    fn names() -> Vec<&'static str> {
+        GAITS.map(|(name, ..)| name).into()
+    }
+}
+
+/// Some of the gaits.
+pub type Gaits = Chosen<GaitList>;
 
 impl Gaits {
-    /// None of them.
-    pub const NONE: Gaits = Gaits(0);
-    /// All of them.
-    pub const ALL: Gaits = Gaits((1 << GAITS.len()) - 1);
-
-    /// The names of all gaits.
-    #[must_use]
-    pub fn names() -> [&'static str; GAITS.len()] {
-        GAITS.map(|(name, ..)| name)
-    }
-
-    /// The gait called `name` alone; `None` when there is none of that name.
-    #[must_use]
-    pub fn from_name(name: &str) -> Option<Gaits> {
-        Gaits::names().iter().position(|known| *known == name).map(|index| Gaits(1 << index))
-    }
-
-    /// The gaits of either.
-    #[must_use]
-    pub const fn and(self, other: Gaits) -> Gaits {
-        Gaits(self.0 | other.0)
-    }
-
-    /// True when the gait called `name` is among them.
-    #[must_use]
-    pub fn contains(self, name: &str) -> bool {
-        Gaits::from_name(name).is_some_and(|one| self.0 & one.0 != 0)
-    }
-
     /// Those of them that a pack has.
     #[must_use]
     pub fn of(self, pack: &CharacterPack) -> Vec<Gait> {

@@ -21,7 +21,7 @@ use policy_core::{
 use super::eval_character::is_upright;
 
 pub use disturbance::Disturbance;
-pub use gait::{Gait, Gaits};
+pub use gait::{Gait, GaitList, Gaits};
 pub use low_pass::LowPass;
 pub use settled::Settled;
 pub use statistics::{mean, median, quantile};

@@ -8,9 +8,11 @@ use std::sync::Arc;
 use anyhow::{Context, Result};
 use clap::Args;
 use clips::ClipFolder;
-use evaluation::stress::Grounds;
-use evaluation::trial::Gaits;
-use evaluation::{Effort, Evaluation, PlayerReport, Progress, Section, clip_states, evaluate, plots, table};
+use evaluation::stress::{CaseList, Cases, GroundList, Grounds};
+use evaluation::trial::{GaitList, Gaits};
+use evaluation::{
+    Chosen, Effort, Evaluation, Named, PlayerReport, Progress, Section, clip_states, evaluate, plots, table,
+};
 use files::write_atomically;
 use physics::Engine;
 use physics_bridge::Model;
@@ -26,7 +28,7 @@ pub(crate) struct Arguments {
     #[arg(required_unless_present = "from")]
     pack: Option<PathBuf>,
     /// Print and draw what an earlier run has written to this file, and measure nothing.
-    #[arg(long, conflicts_with_all = ["pack", "json", "quick", "only", "gaits", "grounds", "physics", "characters"])]
+    #[arg(long, conflicts_with_all = ["pack", "json", "quick", "only", "gaits", "grounds", "cases", "physics", "characters"])]
     from: Option<PathBuf>,
     /// File to write the measures to.
     #[arg(long)]
@@ -42,12 +44,16 @@ pub(crate) struct Arguments {
     only: Vec<Section>,
     /// Measure what is measured by gait in these gaits alone, comma-separated; an unknown name lists them. Figures are the same as with
     /// all of them.
-    #[arg(long, value_delimiter = ',', value_parser = gait)]
+    #[arg(long, value_delimiter = ',', value_parser = chosen::<GaitList>)]
     gaits: Vec<Gaits>,
     /// Measure terrain and get_up on these grounds alone, comma-separated; an unknown name lists them. Figures are the same as with all of
     /// them.
-    #[arg(long, value_delimiter = ',', value_parser = ground)]
+    #[arg(long, value_delimiter = ',', value_parser = chosen::<GroundList>)]
     grounds: Vec<Grounds>,
+    /// Measure robustness in these cases alone, comma-separated, such as strength_x0.8; an unknown name lists them. Figures are the same as
+    /// with all of them.
+    #[arg(long, value_delimiter = ',', value_parser = chosen::<CaseList>)]
+    cases: Vec<Cases>,
     /// Physics engine: mujoco or rapier. Rapier skips the sections encounters and race.
     #[arg(long, default_value = "mujoco", value_parser = engine)]
     physics: Engine,
@@ -92,14 +98,9 @@ fn section(name: &str) -> Result<Section, String> {
     Section::from_name(name).ok_or_else(|| format!("expected one of {}", names()))
 }
 
-/// The gait of a name.
-fn gait(name: &str) -> Result<Gaits, String> {
-    Gaits::from_name(name).ok_or_else(|| format!("expected one of {}", Gaits::names().join(", ")))
-}
-
-/// The ground of a name.
-fn ground(name: &str) -> Result<Grounds, String> {
-    Grounds::from_name(name).ok_or_else(|| format!("expected one of {}", Grounds::names().join(", ")))
+/// The one of a list that has a name.
+fn chosen<L: Named>(name: &str) -> Result<Chosen<L>, String> {
+    Chosen::from_name(name).ok_or_else(|| format!("expected one of {}", Chosen::<L>::names().join(", ")))
 }
 
 /// The engine of a name.
@@ -127,10 +128,7 @@ pub(crate) fn run(
     let pack = super::load::pack(path)?;
     let effort = if arguments.quick { Effort::QUICK } else { Effort::FULL };
     let effort = arguments.characters.map_or(effort, |count| effort.with_characters(count.into()));
-    let some = arguments.gaits.iter().copied().reduce(Gaits::and);
-    let grounds = arguments.grounds.iter().copied().reduce(Grounds::and);
-    let effort =
-        Effort { gaits: some.unwrap_or(effort.gaits), grounds: grounds.unwrap_or(effort.grounds), ..effort };
+    let effort = effort.only(&arguments.gaits, &arguments.grounds, &arguments.cases);
     let sections: &[Section] = if arguments.only.is_empty() { &Section::ALL } else { &arguments.only };
     let states = match clips.filter(|_| sections.contains(&Section::Motion)) {
         Some(clips) => states_of_clips(model, recipes, clips, &pack)?,

@@ -11,9 +11,7 @@ use std::time::Duration;
 use anyhow::{Context, Result, bail, ensure};
 use clap::Args;
 use clips::ClipFolder;
-use evaluation::stress::Grounds;
-use evaluation::trial::Gaits;
-use evaluation::{Effort, Progress, Section, evaluate};
+use evaluation::{Chosen, Effort, Named, Progress, Section, evaluate};
 use files::{read_text_bounded, write_atomically};
 use indicatif::{ProgressBar, ProgressStyle};
 use physics::Engine;
@@ -143,10 +141,13 @@ fn bar(trials: u64, made: u64) -> ProgressBar {
 
 /// How much is measured.
 fn effort(search: &Search) -> Effort {
-    let gaits = search.gaits.iter().filter_map(|name| Gaits::from_name(name)).reduce(Gaits::and);
-    let grounds = search.grounds.iter().filter_map(|name| Grounds::from_name(name)).reduce(Grounds::and);
     let effort = search.characters.map_or(Effort::FULL, |count| Effort::FULL.with_characters(count.into()));
-    Effort { gaits: gaits.unwrap_or(effort.gaits), grounds: grounds.unwrap_or(effort.grounds), ..effort }
+    effort.only(&chosen(&search.gaits), &chosen(&search.grounds), &chosen(&search.cases))
+}
+
+/// Those of a list that have these names.
+fn chosen<L: Named>(names: &[String]) -> Vec<Chosen<L>> {
+    names.iter().filter_map(|name| Chosen::from_name(name)).collect()
 }
 
 /// Takes the trials that an earlier run has left.
