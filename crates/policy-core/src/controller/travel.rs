@@ -25,6 +25,9 @@ use crate::variants::Lasting;
 /// Seconds that a character has to stand up by itself out of a low gait without a rising variant.
 const ASSIST_SECONDS: f32 = 0.1;
 
+/// A character that has risen by itself is in balance, and settles for no longer than this, seconds.
+const RISEN_SETTLES_SECS: f32 = 0.2;
+
 /// Seconds that one with a rising variant has.
 const OWN_RISE_SECONDS: f32 = 2.2;
 
@@ -98,7 +101,7 @@ impl Controller {
             Some(_) if risen => {
                 report.position = graph.standing().map_or(next, GraphPosition::node);
                 self.state.fall.reset();
-                self.state.settle_secs = countdown_secs(self.config.settle_secs);
+                self.state.settle_secs = countdown_secs(self.config.settle_secs.min(RISEN_SETTLES_SECS));
             }
             Some(_) => {}
             None if !waits => report.position = next,
