@@ -13,6 +13,7 @@ use glam::Vec2;
 use crate::footing::steepest;
 use crate::graph::{Edge, PolicyGraph};
 use crate::heading::Heading;
+use crate::ids::NodeId;
 use crate::path::GraphPosition;
 use crate::starts_and_stops::{next_start, next_stop};
 use crate::state::CharacterState;
@@ -64,9 +65,19 @@ pub(crate) struct OnGraph<'a> {
 impl OnGraph<'_> {
     /// Whether all gaits that act here have a variant.
     pub(crate) fn all_have(&self, variant: Variant) -> bool {
+        self.acting().iter().all(|node| variant(self.graph.node(*node)).is_some())
+    }
+
+    /// Whether all gaits that act here move, and more slowly than this, metres per second.
+    pub(crate) fn all_slower_than(&self, mps: f32) -> bool {
+        let speed = |node| self.graph.node(node).speed_mps.unwrap_or(0.0);
+        self.acting().iter().all(|node| speed(*node) > 0.0 && speed(*node) < mps)
+    }
+
+    /// The gaits that act: one twice where it acts alone.
+    fn acting(&self) -> [NodeId; 2] {
         let GraphPosition { from, to, .. } = self.position;
-        let acting = self.position.as_node().map_or([from, to], |node| [node; 2]);
-        acting.iter().all(|node| variant(self.graph.node(*node)).is_some())
+        self.position.as_node().map_or([from, to], |node| [node; 2])
     }
 
     /// Speed of a variant of the nearest gait, metres per second, where it has one.

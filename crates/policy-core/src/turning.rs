@@ -3,6 +3,9 @@
 //!
 //! Agile variants come in by how far the velocity is off, and each brakes and turns in its own way. One policy that has learned to go about out of
 //! any gait is quicker, and leaves the rest to them.
+//!
+//! A gait that is slower than [`GOES_MPS`], such as a crawl, turns on the spot: it need not go before, and its turn ends by the heading alone. Its velocity
+//! sways too much to tell where it goes.
 
 use glam::Vec2;
 
@@ -22,7 +25,10 @@ const CHANGED_RADIANS: f32 = 0.35;
 const FACES_RADIANS: f32 = 0.35;
 const GOES_RADIANS: f32 = 0.2;
 
-/// A character that is slower than this does not go; it sets off, metres per second.
+/// The first of these for a turn on the spot.
+const FACES_ON_THE_SPOT_RADIANS: f32 = 0.2;
+
+/// A character that is slower than this does not go; it sets off, metres per second. A gait that is slower turns on the spot.
 const GOES_MPS: f32 = 0.4;
 
 /// Below this speed a velocity has no direction, metres per second.
@@ -59,7 +65,14 @@ impl Turn {
         let heading = Heading::from_rotation(state.root().rotation);
         let way = target.and_then(|target| (target - state.root().position.truncate()).try_normalize());
         let towards = way.map(|way| (way, heading.angle_off(way)));
-        let turns = towards.is_some_and(|(way, off)| can_turn && self.goes_about(state, way, off));
+        let on_the_spot = place.all_slower_than(GOES_MPS);
+        let turns = towards.is_some_and(|(way, off)| {
+            can_turn
+                && match on_the_spot {
+                    true => off > if self.turns { FACES_ON_THE_SPOT_RADIANS } else { BEGINS_RADIANS },
+                    false => self.goes_about(state, way, off),
+                }
+        });
         let faced = towards.filter(|(_, off_heading)| *off_heading < BEGINS_RADIANS);
         Self {
             turns,

@@ -87,6 +87,25 @@ fn slow_characters_small_angles_and_low_gaits_have_none() {
 }
 
 #[test]
+fn a_gait_slower_than_that_turns_on_the_spot_until_it_faces_its_target() {
+    let mut manifest = common::gaits(|_| ());
+    let crawl = &mut manifest.policies[policy("crawl")];
+    (crawl.speed_mps, crawl.turning) = (Some(0.3), Some(TURNS.into()));
+    let pack = Arc::new(CharacterPack::from_parts(manifest, common::tensors(0.0)).unwrap());
+    let config = ControllerConfig { give_way: None, ..ControllerConfig::default() };
+    let mut controller = Controller::with_config(pack, config);
+    let slow = Moves { speed: 0.05, ..AHEAD };
+    let mut at = |moves, way| share(&mut controller, moves, 1, 3.0, Some(way));
+    (0..120).for_each(|_| assert_eq!(at(slow, 35.0), 0.0, "a small angle"));
+    for faces in [0.0, 45.0, 70.0] {
+        assert_eq!(at(Moves { faces, ..slow }, 90.0), 1.0, "it faces {faces} degrees and hardly moves");
+    }
+    let shares: Vec<f32> = (0..13).map(|_| at(Moves { faces: 80.0, goes: 30.0, speed: 0.3 }, 90.0)).collect();
+    assert!((shares[0] - (1.0 - DT / 0.4)).abs() < 1e-5 && shares[12] < 1e-6, "wherever it goes: {shares:?}");
+    assert_eq!(at(Moves { faces: 135.0, ..slow }, 90.0), 1.0, "a push has turned it");
+}
+
+#[test]
 fn a_saved_state_goes_on_with_its_turn() {
     let mut controller = goes(0, 1.0, 1.0);
     share(&mut controller, AHEAD, 0, 1.0, Some(120.0));
