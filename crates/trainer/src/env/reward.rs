@@ -48,6 +48,9 @@ pub struct RewardConfig {
     /// How much of the reward for speed a character loses that faces away from its target. A low gait otherwise creeps aside
     /// and backwards rather than turn.
     pub facing_factor: f32,
+    /// How fast it is to turn to a target that lies far aside, radians per second; 0 for a character that is paid for facing its target. It is then paid for
+    /// turning at this rate and for going where it faces. A low gait that is paid for facing spins there on its knees, or not at all.
+    pub turn_rate_rps: f32,
     /// Share of the task reward for the height of the root: that of the clips at the position on the graph.
     pub height_share: f32,
     /// Weight of the reward for tracking a clip. Above zero an episode fails when the tracking error exceeds its threshold,
@@ -82,6 +85,7 @@ impl Default for RewardConfig {
             strict_facing_share: 0.0,
             kept_facing_share: 0.0,
             facing_factor: 0.0,
+            turn_rate_rps: 0.0,
             height_share: 0.0,
             tracking_weight: 0.0,
             tracking_share: 0.0,
@@ -168,13 +172,27 @@ pub fn paid_velocity(config: &RewardConfig, skeleton: &Skeleton, state: &Charact
     root.lerp(head.unwrap_or(root), config.head_speed_share)
 }
 
+/// Share of the reward of a character that is paid for turning at a rate which is for the rate; the rest is for going where it faces.
+const TURN_RATE_SHARE: f32 = 0.6;
+
+/// Rate of a turn for each radian that is left of it, per second: it slows down in the last 30 degrees.
+const RATE_PER_RADIAN: f32 = 2.0;
+
+/// Reward for turning at the rate that leads to a target at this angle off the heading: 1 at that rate, falling evenly to 0 at twice the rate of a
+/// wide turn away from it.
+fn turn_rate_reward(state: &CharacterState, angle: f32, turn_rate_rps: f32) -> f32 {
+    let wanted = (RATE_PER_RADIAN * angle).clamp(-turn_rate_rps, turn_rate_rps);
+    (1.0 - (state.root().angular_velocity.z - wanted).abs() / (2.0 * turn_rate_rps)).max(0.0)
+}
+
 /// Reward for going to `target` and facing it. `velocity` is that of the root over the tick, metres per second.
 ///
 /// `0.4 exp(-2 d) + 0.3 exp(-2 d / 9) + 0.3 facing` with `d = (e^2 + w s^2) / scale^2`, speed error `e`, sideways speed `s` and
 /// the sideways weight `w`. The scale grows with the commanded speed from its least value on: evenly below a walk, with the
 /// root above. The narrow bell makes the speed exact. The wide one gives a walk that is told to run, or to stand, a slope. A
 /// share of both bells can be replaced by a reward that falls evenly with the velocity error.
-/// Facing falls evenly from 1 to 0 straight behind; the strict share of it is a bell.
+/// Facing falls evenly from 1 to 0 straight behind; the strict share of it is a bell. With a rate to turn at, the character goes where it faces, and 0.6 of the
+/// reward are for that rate.
 #[must_use]
 pub fn target_reward(
     config: &RewardConfig,
@@ -189,6 +207,9 @@ pub fn target_reward(
     let facing_now = Heading::from_rotation(root.rotation).direction();
     let near = (distance / BRAKING_METRES).min(1.0);
     let direction = if distance > 1e-3 { to_target / distance } else { facing_now };
+    let angle = facing_now.angle_to(direction);
+    let paid_rate = config.turn_rate_rps > 0.0;
+    let direction = if paid_rate { facing_now } else { direction };
     let commanded_mps = pace.speed_mps * near;
     let along = velocity.dot(direction);
     let sideways = velocity.perp_dot(direction);
@@ -214,13 +235,14 @@ pub fn target_reward(
     let [begins, fully] = TURNING_RADIANS;
     let turns = |aside: f32| ((aside.abs() - begins) / (fully - begins)).clamp(0.0, 1.0);
     let turning = (1.0 - share) * near * turns(to_target) + share * turns(to_own);
-    RewardTerms {
-        task: speed + 0.3 * facing,
-        speed_mps: along,
-        commanded_mps,
-        turning,
-        ..RewardTerms::default()
-    }
+    let task = match paid_rate {
+        true => {
+            let rate = turn_rate_reward(state, angle, config.turn_rate_rps);
+            TURN_RATE_SHARE * rate + (1.0 - TURN_RATE_SHARE) * speed / 0.7
+        }
+        false => speed + 0.3 * facing,
+    };
+    RewardTerms { task, speed_mps: along, commanded_mps, turning, ..RewardTerms::default() }
 }
 
 /// Speed of the root up to which standing up is at ease, metres per second.

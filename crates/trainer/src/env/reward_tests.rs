@@ -91,6 +91,26 @@ fn facing_away_takes_the_reward_for_speed() {
 }
 
 #[test]
+fn a_rate_to_turn_at_pays_for_that_rate_and_for_going_where_it_faces() {
+    let config = RewardConfig { turn_rate_rps: 1.0, facing_factor: 1.0, ..RewardConfig::default() };
+    let task = |degrees: f32, rate: f32, velocity: Vec2| {
+        let mut state = CharacterState::new(&Skeleton::humanoid());
+        state.bodies[0].angular_velocity.z = rate;
+        let pace = Pace { speed_mps: 0.3, speed_scale_mps: 0.2, facing: None };
+        target_reward(&config, &state, velocity, 5.0 * Vec2::from_angle(degrees.to_radians()), pace).task
+    };
+    let ahead = Vec2::new(0.3, 0.0);
+    assert!((task(90.0, 1.0, ahead) - 1.0).abs() < 1e-5 && (task(-90.0, -1.0, ahead) - 1.0).abs() < 1e-5);
+    // Three tenths for half the rate, all six for turning away, and nothing more for a spin.
+    assert!((task(90.0, 0.0, ahead) - 0.7).abs() < 1e-5 && (task(90.0, -1.0, ahead) - 0.4).abs() < 1e-5);
+    assert!((task(90.0, 9.0, ahead) - 0.4).abs() < 1e-5);
+    // 0.1 radians are left: it turns at a fifth of the rate.
+    assert!((task(0.1_f32.to_degrees(), 0.2, ahead) - 1.0).abs() < 1e-4);
+    let aside = task(90.0, 1.0, Vec2::new(0.0, 0.3));
+    assert!(aside < 0.85, "going to the target without facing it: {aside}");
+}
+
+#[test]
 fn every_centimetre_off_the_ground_pays() {
     let at = |metres: f32| {
         let mut state = CharacterState::new(&Skeleton::humanoid());

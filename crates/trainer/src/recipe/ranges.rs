@@ -54,6 +54,7 @@ const RANGES: &[(&str, f64, f64)] = &[
     ("environment.reward.linear_speed_share", 0.0, 1.0),
     ("environment.reward.strict_facing_share", 0.0, 1.0),
     ("environment.reward.facing_factor", 0.0, 1.0),
+    ("environment.reward.turn_rate_rps", 0.0, 20.0),
     ("environment.reward.height_share", 0.0, 1.0),
     ("environment.reward.tracking_weight", 0.0, 1.0),
     ("environment.reward.tracking_share", 0.0, 1.0),
