@@ -38,7 +38,8 @@ pub struct Node {
     pub starting: Option<NodeId>,
     /// Variant of the policy that acts from the moment in which a character that goes is to stand, until it stands.
     pub stopping: Option<NodeId>,
-    /// Variant of the policy that acts while a character that goes turns: from the moment in which its target lies far aside until it goes there.
+    /// Variant of the policy that acts while a character turns: from the moment in which its target lies far aside until it goes there, or faces it
+    /// in a gait that is slower than 0.4 m/s.
     pub turning: Option<NodeId>,
     /// Variant of the policy that acts where a push drives a character that goes off its course, until it has its balance back.
     pub catching: Option<NodeId>,

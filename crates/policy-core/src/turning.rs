@@ -21,6 +21,9 @@ const BEGINS_RADIANS: f32 = 0.7;
 /// catch.
 const CHANGED_RADIANS: f32 = 0.35;
 
+/// Angle off the heading at which a gait that turns on the spot turns back to its target, radians: it has strayed.
+const STRAYED_RADIANS: f32 = 1.2;
+
 /// Angles off heading and course below which it ends, radians.
 const FACES_RADIANS: f32 = 0.35;
 const GOES_RADIANS: f32 = 0.2;
@@ -69,7 +72,7 @@ impl Turn {
         let turns = towards.is_some_and(|(way, off)| {
             can_turn
                 && match on_the_spot {
-                    true => off > if self.turns { FACES_ON_THE_SPOT_RADIANS } else { BEGINS_RADIANS },
+                    true => self.turns_on_the_spot(way, off),
                     false => self.goes_about(state, way, off),
                 }
         });
@@ -79,6 +82,17 @@ impl Turn {
             share: switched(self.share, turns, CROSS_SECS, dt),
             way: faced.map_or(self.way, |(way, _)| way),
         }
+    }
+
+    /// The same of a gait that turns on the spot, whose heading sways: where the way has not changed, it is far off before it turns.
+    fn turns_on_the_spot(self, way: Vec2, off_heading: f32) -> bool {
+        let begins = if self.has_changed(way) { BEGINS_RADIANS } else { STRAYED_RADIANS };
+        off_heading > if self.turns { FACES_ON_THE_SPOT_RADIANS } else { begins }
+    }
+
+    /// Whether the way to the target is another one than when it last faced it.
+    fn has_changed(self, way: Vec2) -> bool {
+        libm::fabsf(self.way.angle_to(way)) > CHANGED_RADIANS
     }
 
     /// Whether it is to turn to go this way, or still turns; `off_heading` is the angle from the heading to it, radians.
@@ -93,8 +107,7 @@ impl Turn {
             }
             false => {
                 let has_gone = self.way != Vec2::ZERO && speed > GOES_MPS;
-                let has_changed = libm::fabsf(self.way.angle_to(way)) > CHANGED_RADIANS;
-                has_gone && has_changed && off_heading > BEGINS_RADIANS
+                has_gone && self.has_changed(way) && off_heading > BEGINS_RADIANS
             }
         }
     }

@@ -102,7 +102,8 @@ fn a_gait_slower_than_that_turns_on_the_spot_until_it_faces_its_target() {
     }
     let shares: Vec<f32> = (0..13).map(|_| at(Moves { faces: 80.0, goes: 30.0, speed: 0.3 }, 90.0)).collect();
     assert!((shares[0] - (1.0 - DT / 0.4)).abs() < 1e-5 && shares[12] < 1e-6, "wherever it goes: {shares:?}");
-    assert_eq!(at(Moves { faces: 135.0, ..slow }, 90.0), 1.0, "a push has turned it");
+    assert_eq!(at(Moves { faces: 140.0, ..slow }, 90.0), 0.0, "it sways");
+    assert_eq!(at(Moves { faces: 165.0, ..slow }, 90.0), 1.0, "a push has turned it");
 }
 
 #[test]

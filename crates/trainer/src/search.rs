@@ -105,8 +105,9 @@ impl Aim {
     /// # Errors
     /// When the report has nothing there: what it has instead.
     pub fn find(&self, report: &Value) -> Result<Option<f64>, String> {
-        let mut at = report;
-        for key in self.measure.split('.') {
+        let (mut at, mut rest) = (report, self.measure.as_str());
+        while !rest.is_empty() {
+            let key = key_of(at, rest);
             let next = match at {
                 Value::Object(map) => map.get(key),
                 Value::Array(list) => key.parse::<usize>().ok().and_then(|index| list.get(index)),
@@ -120,6 +121,7 @@ impl Aim {
                 };
                 format!("{}: expected {key} in the report, found {}", self.measure, quoted(&there))
             })?;
+            rest = rest[key.len()..].trim_start_matches('.');
         }
         match at {
             Value::Null => Ok(None),
@@ -130,6 +132,14 @@ impl Aim {
             }
         }
     }
+}
+
+/// The key that the rest of a measure begins with: one that is there, for keys have dots in them too, or what comes before the first dot.
+fn key_of<'a>(at: &Value, rest: &'a str) -> &'a str {
+    let ends = rest.match_indices('.').map(|(index, _)| index).chain([rest.len()]);
+    let is_there = |key: &&str| matches!(at, Value::Object(map) if map.contains_key(*key));
+    let first = rest.split('.').next().unwrap_or(rest);
+    ends.map(|end| &rest[..end]).find(is_there).unwrap_or(first)
 }
 
 /// Why a search can't be used.
@@ -300,6 +310,7 @@ aims = [
         let report = serde_json::json!({
             "push_torso": { "run": { "left_newton": 375.0, "right_newton": null } },
             "straight": { "speed": [{ "reached_mps": 1.5 }] },
+            "robustness": { "strength_x0.8": { "run": { "falls": 2 } } },
         });
         let find = |measure: &str| {
             let aim = Aim { measure: measure.into(), ..parse(TEXT).unwrap().aims[0].clone() };
@@ -308,6 +319,8 @@ aims = [
         assert_eq!(find("push_torso.run.left_newton"), Ok(Some(375.0)));
         assert_eq!(find("push_torso.run.right_newton"), Ok(None));
         assert_eq!(find("straight.speed.0.reached_mps"), Ok(Some(1.5)));
+        assert_eq!(find("robustness.strength_x0.8.run.falls"), Ok(Some(2.0)), "a key with a dot");
+        assert!(find("robustness.strength_x0.7.run.falls").unwrap_err().contains("expected strength_x0 in"));
         let wrong = find("push_torso.run.left").unwrap_err();
         assert!(wrong.contains("expected left in the report") && wrong.contains("right_newton"), "{wrong}");
         assert!(find("straight.speed.1.reached_mps").unwrap_err().contains("a list of 1"));
