@@ -49,7 +49,8 @@ pub struct RewardConfig {
     /// and backwards rather than turn.
     pub facing_factor: f32,
     /// How fast it is to turn to a target that lies far aside, radians per second; 0 for a character that is paid for facing its target. It is then paid for
-    /// turning at this rate and for going where it faces. A low gait that is paid for facing spins there on its knees, or not at all.
+    /// turning at this rate and for going where it faces, whatever the shares and factors of facing and turning say. A low gait that is paid for facing
+    /// spins on its knees, or rests half-way.
     pub turn_rate_rps: f32,
     /// Share of the task reward for the height of the root: that of the clips at the position on the graph.
     pub height_share: f32,
