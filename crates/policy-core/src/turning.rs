@@ -84,17 +84,6 @@ impl Turn {
         }
     }
 
-    /// The same of a gait that turns on the spot, whose heading sways: where the way has not changed, it is far off before it turns.
-    fn turns_on_the_spot(self, way: Vec2, off_heading: f32) -> bool {
-        let begins = if self.has_changed(way) { BEGINS_RADIANS } else { STRAYED_RADIANS };
-        off_heading > if self.turns { FACES_ON_THE_SPOT_RADIANS } else { begins }
-    }
-
-    /// Whether the way to the target is another one than when it last faced it.
-    fn has_changed(self, way: Vec2) -> bool {
-        libm::fabsf(self.way.angle_to(way)) > CHANGED_RADIANS
-    }
-
     /// Whether it is to turn to go this way, or still turns; `off_heading` is the angle from the heading to it, radians.
     fn goes_about(self, state: &CharacterState, way: Vec2, off_heading: f32) -> bool {
         let velocity = state.root().linear_velocity.truncate();
@@ -110,5 +99,16 @@ impl Turn {
                 has_gone && self.has_changed(way) && off_heading > BEGINS_RADIANS
             }
         }
+    }
+
+    /// The same of a gait that turns on the spot. Its heading sways: where the way has not changed, it turns once it has strayed far.
+    fn turns_on_the_spot(self, way: Vec2, off_heading: f32) -> bool {
+        let begins = if self.has_changed(way) { BEGINS_RADIANS } else { STRAYED_RADIANS };
+        off_heading > if self.turns { FACES_ON_THE_SPOT_RADIANS } else { begins }
+    }
+
+    /// Whether the way to the target is another one than when it last faced it.
+    fn has_changed(self, way: Vec2) -> bool {
+        libm::fabsf(self.way.angle_to(way)) > CHANGED_RADIANS
     }
 }

@@ -25,11 +25,11 @@ use crate::variants::Lasting;
 /// Seconds that a character has to stand up by itself out of a low gait without a rising variant.
 const ASSIST_SECONDS: f32 = 0.1;
 
-/// A character that has risen by itself is in balance, and settles for no longer than this, seconds.
-const RISEN_SETTLES_SECS: f32 = 0.2;
-
 /// Seconds that one with a rising variant has.
 const OWN_RISE_SECONDS: f32 = 2.2;
+
+/// A character that has risen by itself is in balance, and settles for no longer than this, seconds.
+const RISEN_SETTLES_SECS: f32 = 0.2;
 
 impl Controller {
     /// Where on the graph to go: to the nearest node that a pending skill may start from, else to the command's goal.
