@@ -17,6 +17,7 @@ pub mod recipe;
 pub mod run;
 pub mod search;
 pub mod style;
+pub mod toml_file;
 pub mod training;
 pub mod workspace;
 

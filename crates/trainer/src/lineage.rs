@@ -6,18 +6,17 @@ use std::path::{Path, PathBuf};
 use serde::{Deserialize, Serialize};
 
 use files::quoted;
-use files::read_text_bounded;
 
 use crate::average::Averaging;
 use crate::posture::Posture;
+use crate::toml_file::{self, TomlFileError};
 
 mod execute;
 
 /// File in a run's folder that says which step of a lineage made it.
 pub const STEP_FILE: &str = "lineage.toml";
 
-/// Largest plan, bytes, and most steps of one.
-const MOST_BYTES: u64 = 1 << 20;
+/// Most steps of one.
 const MOST_STEPS: usize = 1000;
 
 /// Runs in order.
@@ -110,22 +109,9 @@ impl AverageStep {
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum LineageError {
-    /// The file can't be read.
-    #[error("cannot read {}", path.display())]
-    Io {
-        /// The file.
-        path: PathBuf,
-        /// Why.
-        source: std::io::Error,
-    },
-    /// It is no lineage.
-    #[error("{}: {message}", path.display())]
-    Toml {
-        /// The file.
-        path: PathBuf,
-        /// What was expected and found, with its line.
-        message: String,
-    },
+    /// The file can't be read, or its fields are not those expected.
+    #[error(transparent)]
+    File(#[from] TomlFileError),
     /// A step can't be done.
     #[error("{}: steps[{step}]: expected {expected}, found {found}", path.display())]
     Step {
@@ -165,9 +151,7 @@ impl Lineage {
     /// # Errors
     /// When the file can't be read, has unknown or missing fields, or a step reads a run that no earlier step makes.
     pub fn load(path: &Path) -> Result<Self, LineageError> {
-        let text = read_text_bounded(path, MOST_BYTES)
-            .map_err(|source| LineageError::Io { path: path.to_owned(), source })?;
-        Self::parse(path, &text)
+        Self::parse(path, &toml_file::read_text(path)?)
     }
 
     /// Parses and checks the text of a lineage; `path` is only named in errors.
@@ -175,11 +159,7 @@ impl Lineage {
     /// # Errors
     /// As [`Lineage::load`].
     pub fn parse(path: &Path, text: &str) -> Result<Self, LineageError> {
-        let toml = |e: toml::de::Error| LineageError::Toml {
-            path: path.to_owned(),
-            message: quoted(&e.to_string()),
-        };
-        let lineage: Self = toml::from_str(text).map_err(toml)?;
+        let lineage: Self = toml_file::parse(path, text)?;
         let wrong = |step, expected: &str, found: String| {
             let (expected, found) = (expected.to_owned(), quoted(&found));
             LineageError::Step { path: path.to_owned(), step, expected, found }

@@ -22,27 +22,15 @@ pub use source::trained_policy;
 use crate::checkpoint::{ACTOR, Checkpoint, CheckpointError, DISCRIMINATOR, EMA};
 use crate::env::Normalisers;
 use crate::nn::Network;
+use crate::toml_file::TomlFileError;
 
 /// Why a pack can't be bound.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum BindError {
-    /// The plan can't be read.
-    #[error("cannot read {}", path.display())]
-    Io {
-        /// The file.
-        path: PathBuf,
-        /// Why.
-        source: std::io::Error,
-    },
-    /// The plan is none.
-    #[error("{}: {message}", path.display())]
-    Plan {
-        /// The file.
-        path: PathBuf,
-        /// What was expected and found, with its line.
-        message: String,
-    },
+    /// The plan can't be read, or its fields are not those expected.
+    #[error(transparent)]
+    Plan(#[from] TomlFileError),
     /// A checkpoint is missing or wrong.
     #[error(transparent)]
     Checkpoint(#[from] CheckpointError),

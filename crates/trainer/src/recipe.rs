@@ -11,6 +11,7 @@ use serde::Serialize;
 use crate::amp::DiscriminatorConfig;
 use crate::env::{EnvironmentConfig, MET};
 use crate::ppo::PpoConfig;
+use crate::toml_file::{self, TomlFileError};
 
 mod checks;
 mod file;
@@ -61,22 +62,9 @@ pub struct Phase {
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum RecipeError {
-    /// The file can't be read.
-    #[error("cannot read {}", path.display())]
-    Io {
-        /// The file.
-        path: PathBuf,
-        /// Why.
-        source: std::io::Error,
-    },
-    /// It is no recipe.
-    #[error("{}: {message}", path.display())]
-    Toml {
-        /// The file.
-        path: PathBuf,
-        /// What was expected and found.
-        message: String,
-    },
+    /// The file can't be read, or its fields are not those expected.
+    #[error(transparent)]
+    File(#[from] TomlFileError),
     /// A number is out of its range.
     #[error("{}: expected {least} to {most} in {field}, found {found}", path.display())]
     Range {
@@ -111,7 +99,7 @@ impl Recipe {
     /// # Errors
     /// When the file can't be read, has unknown or missing fields, or a value out of its range.
     pub fn load(path: &Path) -> Result<Self, RecipeError> {
-        Self::parse(path, &file::read(path)?)
+        Self::parse(path, &toml_file::read_text(path)?)
     }
 
     /// Parses and checks the text of a recipe. `path` is named in errors, and the character's file lies beside it.

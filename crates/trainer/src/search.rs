@@ -10,21 +10,19 @@ use std::path::{Path, PathBuf};
 use evaluation::stress::{CaseList, GroundList};
 use evaluation::trial::GaitList;
 use evaluation::{Chosen, Named, Section};
-use files::{quoted, read_text_bounded};
+use files::quoted;
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
 
 use crate::average::Averaging;
 use crate::posture::Posture;
+use crate::toml_file::{self, TomlFileError};
 
 mod cma;
 mod searcher;
 
 pub use cma::Cma;
 pub use searcher::{Candidate, Searcher, Trial};
-
-/// Largest file of a search, bytes.
-const MOST_BYTES: u64 = 1 << 20;
 
 /// What is searched, and for what.
 #[derive(Clone, Debug, PartialEq, Deserialize)]
@@ -146,22 +144,9 @@ fn key_of<'a>(at: &Value, rest: &'a str) -> &'a str {
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum SearchError {
-    /// The file can't be read.
-    #[error("cannot read {}", path.display())]
-    Io {
-        /// The file.
-        path: PathBuf,
-        /// Why.
-        source: std::io::Error,
-    },
-    /// It is no search.
-    #[error("{}: {message}", path.display())]
-    Toml {
-        /// The file.
-        path: PathBuf,
-        /// What was expected and found, with its line.
-        message: String,
-    },
+    /// The file can't be read, or its fields are not those expected.
+    #[error(transparent)]
+    File(#[from] TomlFileError),
     /// A field does not fit.
     #[error("{}: {field}: expected {expected}, found {found}", path.display())]
     Field {
@@ -196,9 +181,7 @@ impl Search {
     /// # Errors
     /// When the file can't be read, has unknown or missing fields, or a field does not fit.
     pub fn load(path: &Path) -> Result<Self, SearchError> {
-        let text = read_text_bounded(path, MOST_BYTES)
-            .map_err(|source| SearchError::Io { path: path.to_owned(), source })?;
-        Self::parse(path, &text)
+        Self::parse(path, &toml_file::read_text(path)?)
     }
 
     /// Parses and checks the text of a search; `path` is only named in errors.
@@ -206,8 +189,7 @@ impl Search {
     /// # Errors
     /// As [`Search::load`].
     pub fn parse(path: &Path, text: &str) -> Result<Self, SearchError> {
-        let search: Self = toml::from_str(text)
-            .map_err(|e| SearchError::Toml { path: path.to_owned(), message: quoted(&e.to_string()) })?;
+        let search: Self = toml_file::parse(path, text)?;
         let wrong = |(field, expected, found): Wrong| SearchError::Field {
             path: path.to_owned(),
             field,

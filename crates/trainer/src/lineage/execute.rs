@@ -3,14 +3,14 @@
 use std::path::Path;
 
 use anyhow::{Context, Result, bail};
-use files::read_text_bounded;
 use serde::Serialize;
 
-use super::{AverageStep, Lineage, MOST_BYTES, STEP_FILE, Step, TrainStep};
+use super::{AverageStep, Lineage, STEP_FILE, Step, TrainStep};
 use crate::average::average;
 use crate::posture::Posture;
 use crate::recipe::Recipe;
 use crate::run::{Existing, Run, RunError, RunFolder, holds_a_run, newest_checkpoint};
+use crate::toml_file;
 use crate::workspace::{Start, Workspace};
 
 impl Lineage {
@@ -133,8 +133,7 @@ pub(super) fn stamp(step: &Step, recipe: Option<&Recipe>) -> Result<String> {
 
 pub(super) fn check_stamp(folder: &Path, stamp: &str) -> Result<()> {
     let path = folder.join(STEP_FILE);
-    let found =
-        read_text_bounded(&path, MOST_BYTES).with_context(|| format!("cannot read {}", path.display()))?;
+    let found = toml_file::read_text(&path)?;
     if found != stamp {
         bail!("{}: expected the step of this plan with its recipe as it is, found another", path.display());
     }

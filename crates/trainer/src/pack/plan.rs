@@ -2,15 +2,11 @@
 
 use std::path::Path;
 
-use files::quoted;
-use files::read_text_bounded;
 use policy_core::format::{CreditEntry, EdgeEntry, PathEntry, SkillEntry};
 use serde::Deserialize;
 
 use super::BindError;
-
-/// Largest plan, bytes.
-const MOST_BYTES: u64 = 1 << 20;
+use crate::toml_file;
 
 /// What a pack is to hold: nodes, edges, paths and skills by name. A TOML file.
 #[derive(Clone, Debug, PartialEq, Deserialize)]
@@ -96,10 +92,7 @@ impl PackPlan {
     /// # Errors
     /// When the file can't be read, or has unknown or missing fields.
     pub fn load(path: &Path) -> Result<Self, BindError> {
-        let text = read_text_bounded(path, MOST_BYTES)
-            .map_err(|source| BindError::Io { path: path.to_owned(), source })?;
-        toml::from_str(&text)
-            .map_err(|e| BindError::Plan { path: path.to_owned(), message: quoted(&e.to_string()) })
+        Ok(toml_file::parse(path, &toml_file::read_text(path)?)?)
     }
 
     /// The plan without skills that `trained` refuses: their nodes, edges and episodic skills go, paths close over

@@ -4,15 +4,12 @@ use std::path::Path;
 
 use clips::{Clip, ClipError, ClipFolder, Leap};
 use files::quoted;
-use files::read_text_bounded;
 use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
 use toml::{Table, Value};
 
 use super::{Phase, Recipe, RecipeError};
-
-/// Largest file, bytes.
-const MOST_BYTES: u64 = 1 << 20;
+use crate::toml_file::{self, TomlFileError};
 
 /// Folder of the characters' files, beside the recipes.
 const CHARACTERS: &str = "characters";
@@ -169,19 +166,14 @@ struct CharacterFile {
     discriminator: Table,
 }
 
-/// Reads the text of a recipe's or a character's file.
-pub(super) fn read(path: &Path) -> Result<String, RecipeError> {
-    read_text_bounded(path, MOST_BYTES).map_err(|source| RecipeError::Io { path: path.to_owned(), source })
-}
-
 /// Parses a recipe and overlays its tables.
 pub(super) fn parse(path: &Path, text: &str) -> Result<Recipe, RecipeError> {
-    let recipe: RecipeFile = from_text(path, text)?;
+    let recipe: RecipeFile = toml_file::parse(path, text)?;
     let character = match &recipe.character {
         Some(name) if is_plain(name) => {
             let folder = path.parent().unwrap_or(Path::new(".")).join(CHARACTERS);
             let path = folder.join(format!("{name}.toml"));
-            from_text(&path, &read(&path)?)?
+            toml_file::parse(&path, &toml_file::read_text(&path)?)?
         }
         Some(name) => {
             let (field, expected) = ("character", "lower-case letters, digits and underscores");
@@ -226,22 +218,15 @@ pub fn is_plain(name: &str) -> bool {
     !name.is_empty() && name.len() <= 64 && name.chars().all(plain)
 }
 
-fn from_text<T: DeserializeOwned>(path: &Path, text: &str) -> Result<T, RecipeError> {
-    toml::from_str(text)
-        .map_err(|e| RecipeError::Toml { path: path.to_owned(), message: quoted(&e.to_string()) })
-}
-
 /// A section of the configuration with a phase's table over it.
 fn section<T: DeserializeOwned>(
     path: &Path,
     name: &str,
     base: &Table,
     over: &Table,
-) -> Result<T, RecipeError> {
-    T::deserialize(Value::Table(overlaid(base, over))).map_err(|e| RecipeError::Toml {
-        path: path.to_owned(),
-        message: format!("{name}: {}", quoted(e.message())),
-    })
+) -> Result<T, TomlFileError> {
+    T::deserialize(Value::Table(overlaid(base, over)))
+        .map_err(|e| TomlFileError::toml(path, format!("{name}: {}", quoted(e.message()))))
 }
 
 /// The fields of `base` and `over`; where both have one, that of `over`. Tables are overlaid field by field.

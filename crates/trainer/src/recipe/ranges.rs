@@ -6,6 +6,7 @@ use files::quoted;
 use toml::Value;
 
 use super::{Recipe, RecipeError};
+use crate::toml_file::TomlFileError;
 
 /// Field, least and largest value. A star stands for any name, as in tables of bodies.
 const RANGES: &[(&str, f64, f64)] = &[
@@ -110,7 +111,7 @@ const RANGES: &[(&str, f64, f64)] = &[
 impl Recipe {
     /// Checks every number.
     pub(super) fn check_ranges(&self, path: &Path) -> Result<(), RecipeError> {
-        let wrong = |message: String| RecipeError::Toml { path: path.to_owned(), message };
+        let wrong = |message: String| TomlFileError::toml(path, message);
         let value = Value::try_from(self).map_err(|e| wrong(e.to_string()))?;
         check(path, &value, "", "")
     }
@@ -142,7 +143,7 @@ fn check(path: &Path, value: &Value, field: &str, key: &str) -> Result<(), Recip
     };
     let Some((least, most)) = range(key) else {
         let message = format!("{} has no range", quoted(field));
-        return Err(RecipeError::Toml { path: path.to_owned(), message });
+        return Err(TomlFileError::toml(path, message).into());
     };
     // In single precision, as the fields are; not a number is in no range.
     if (least as f32..=most as f32).contains(&(found as f32)) {
