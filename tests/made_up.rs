@@ -25,19 +25,8 @@ pub fn pack(model: &Model, mjcf: &str) -> CharacterPack {
     let policy = |name: &str| PolicyEntry {
         name: name.into(),
         layers: policy_sizes.into(),
-        fall_height: None,
-        speed_mps: None,
-        strafes: false,
-        rough_ground: None,
-        agile: None,
-        steady: None,
-        resting: None,
-        starting: None,
-        stopping: None,
-        turning: None,
-        catching: None,
-        rising: None,
         origin: "made up".into(),
+        ..PolicyEntry::default()
     };
     let end = EndEntry {
         threshold: 0.5,
@@ -51,7 +40,7 @@ pub fn pack(model: &Model, mjcf: &str) -> CharacterPack {
         minimum_speed_mps: 0.0,
         maximum_speed_mps: None,
         on_footfall: false,
-        running: None,
+        in_stride: Vec::new(),
         clock_seconds: None,
         name: "bow".into(),
         policy: "bow".into(),

@@ -68,6 +68,8 @@ pub struct SkillReport {
     pub jump_m: Option<f32>,
     /// Seconds in which both feet are off the ground.
     pub air_s: Option<f32>,
+    /// Seconds from the press to the beginning of the longest time in which both feet are off the ground; `None` where most never are.
+    pub leaves_s: Option<f32>,
     /// Greatest horizontal distance of a hand ahead of the root, metres: how far it punches. `None` without bodies of such a name.
     pub hand_m: Option<f32>,
 }
@@ -78,6 +80,10 @@ struct Limbs {
     highest: f32,
     lower: f32,
     air_secs: f32,
+    /// When the flight that lasts began, and how long it has lasted, seconds.
+    flight: Option<[f32; 2]>,
+    /// The longest one.
+    longest: Option<[f32; 2]>,
     hand: Option<f32>,
 }
 
@@ -93,12 +99,23 @@ impl Limbs {
         self
     }
 
-    /// A tick later, with the lowest points of the feet so high above the ground.
-    fn after(self, heights: impl Iterator<Item = f32>) -> Self {
+    /// So many seconds after the press, with the lowest points of the feet so high above the ground.
+    fn after(self, secs: f32, heights: impl Iterator<Item = f32>) -> Self {
         let [low, high] = heights.fold([f32::INFINITY, 0.0], |[low, high], h| [h.min(low), h.max(high)]);
         let low = if low.is_finite() { low } else { 0.0 };
-        let air_secs = self.air_secs + if low > OFF_GROUND_METRES { TICK_SECS } else { 0.0 };
-        Self { highest: self.highest.max(high), lower: self.lower.max(low), air_secs, ..self }
+        let flight = (low > OFF_GROUND_METRES).then(|| {
+            let [begun, lasted] = self.flight.unwrap_or([secs, 0.0]);
+            [begun, lasted + TICK_SECS]
+        });
+        let longer = flight.filter(|[_, lasts]| self.longest.is_none_or(|[_, longest]| *lasts > longest));
+        Self {
+            highest: self.highest.max(high),
+            lower: self.lower.max(low),
+            air_secs: self.air_secs + if flight.is_some() { TICK_SECS } else { 0.0 },
+            flight,
+            longest: longer.or(self.longest),
+            ..self
+        }
     }
 }
 
@@ -212,6 +229,7 @@ pub fn measure_skill(
         foot_m: of(|limbs| Some(limbs.highest)),
         jump_m: of(|limbs| Some(limbs.lower)),
         air_s: of(|limbs| Some(limbs.air_secs)),
+        leaves_s: of(|limbs| limbs.longest.map(|[begins, _]| begins)),
         hand_m: of(|limbs| limbs.hand),
     }
 }
@@ -252,7 +270,8 @@ fn comes_back(
         let report = eval.controller.report();
         if report.skill.is_some() {
             let feet = pack.skeleton().feet().iter();
-            limbs = limbs.after(feet.map(|foot| eval.character.clearance_of(*foot)));
+            let secs = (tick - start) as f32 * TICK_SECS;
+            limbs = limbs.after(secs, feet.map(|foot| eval.character.clearance_of(*foot)));
             limbs = limbs.reaching(&eval.state, &hands);
         }
         if let Some((skill, end)) = report.skill_ended
@@ -271,8 +290,18 @@ mod tests {
     #[test]
     fn a_kick_lifts_one_foot_and_a_jump_both() {
         let kick = [[0.0, 0.0], [0.0, 0.9], [0.02, 0.5], [0.0, 0.0]];
-        let feet = kick.iter().fold(Limbs::default(), |limbs, heights| limbs.after(heights.iter().copied()));
-        assert_eq!(feet, Limbs { highest: 0.9, lower: 0.02, air_secs: TICK_SECS, hand: None });
-        assert_eq!(Limbs::default().after(std::iter::empty()), Limbs::default(), "a character without feet");
+        let after =
+            |limbs: Limbs, (secs, heights): (f32, &[f32; 2])| limbs.after(secs, heights.iter().copied());
+        let feet = [0.1, 0.2, 0.3, 0.4].into_iter().zip(&kick).fold(Limbs::default(), after);
+        assert_eq!((feet.highest, feet.lower, feet.air_secs), (0.9, 0.02, TICK_SECS));
+        assert_eq!(feet.longest, Some([0.3, TICK_SECS]));
+        // A short flight, and a longer one.
+        let heights = [0.02, 0.0, 0.03, 0.1, 0.03, 0.0, 0.02].map(|height| [height; 2]);
+        let times = (0..).map(|tick| tick as f32 * TICK_SECS);
+        let jump = times.zip(&heights).fold(Limbs::default(), after);
+        assert_eq!(jump.longest.map(|[begins, _]| begins), Some(2.0 * TICK_SECS));
+        assert!((jump.longest.unwrap()[1] - 3.0 * TICK_SECS).abs() < 1e-6 && jump.lower == 0.1);
+        let without_feet = Limbs::default().after(0.1, std::iter::empty());
+        assert_eq!(without_feet, Limbs::default(), "a character without feet");
     }
 }

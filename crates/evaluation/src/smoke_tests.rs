@@ -59,17 +59,8 @@ fn pack(falls: bool) -> Arc<CharacterPack> {
         layers: vec![inputs, 4, joints],
         fall_height: falls.then_some(0.5),
         speed_mps: Some(if name == "idle" { 0.0 } else { 1.0 }),
-        strafes: false,
-        rough_ground: None,
-        agile: None,
-        steady: None,
-        resting: None,
-        starting: None,
-        stopping: None,
-        turning: None,
-        catching: None,
-        rising: None,
         origin: "made up".into(),
+        ..PolicyEntry::default()
     };
     let edge = |a: &str, b: &str| EdgeEntry {
         nodes: [a.into(), b.into()],
@@ -91,7 +82,7 @@ fn pack(falls: bool) -> Arc<CharacterPack> {
         minimum_speed_mps: 0.0,
         maximum_speed_mps: None,
         on_footfall: false,
-        running: None,
+        in_stride: Vec::new(),
         clock_seconds: None,
         name: "roll".into(),
         policy: "roll".into(),

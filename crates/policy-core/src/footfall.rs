@@ -1,11 +1,18 @@
 //! Footfall: the moment of a stride in which a foot comes down. A skill that continues a run begins in step with it.
 
+use crate::heading::Heading;
 use crate::ids::BodyId;
 use crate::skeleton::Skeleton;
 use crate::state::CharacterState;
 
 /// A foot that is slower than this share of the root stands.
 const STANDS_SHARE: f32 = 0.5;
+
+/// A character goes straight ahead while its velocity is within 30 degrees of its heading, whose cosine this is, ...
+const STRAIGHT_COS: f32 = 0.866;
+
+/// ... and it turns more slowly than this, radians per second.
+const STRAIGHT_RPS: f32 = 1.5;
 
 /// True while a foot stands ahead of the root, along the root's velocity: in a run, for about 0.1 s from touch-down on.
 ///
@@ -22,9 +29,18 @@ pub fn foot_comes_down(skeleton: &Skeleton, state: &CharacterState) -> bool {
     skeleton.feet().is_empty() || skeleton.feet().iter().copied().any(comes_down)
 }
 
+/// True for a character that goes where it faces and hardly turns: what continues a stride straight ahead may begin.
+#[must_use]
+pub(crate) fn goes_straight(state: &CharacterState) -> bool {
+    let root = state.root();
+    let velocity = root.linear_velocity.truncate();
+    let ahead = Heading::from_rotation(root.rotation).direction();
+    ahead.dot(velocity) >= STRAIGHT_COS * velocity.length() && root.angular_velocity.z.abs() <= STRAIGHT_RPS
+}
+
 #[cfg(test)]
 mod tests {
-    use glam::Vec3;
+    use glam::{Quat, Vec3};
 
     use super::*;
     use crate::skeleton::Roles;
@@ -44,6 +60,21 @@ mod tests {
         assert!(at(0.2, 0.1) && at(0.05, 0.9), "it stands ahead");
         assert!(!at(0.2, 1.1), "it swings ahead");
         assert!(!at(-0.05, 0.1), "it stands behind");
+    }
+
+    #[test]
+    fn one_that_turns_or_moves_aside_does_not_go_straight() {
+        let mut state = CharacterState::new(&Skeleton::humanoid());
+        let mut goes = |velocity: Vec3, yaw_rps: f32, pitch: f32| {
+            let root = &mut state.bodies[0];
+            root.rotation = Quat::from_rotation_y(pitch);
+            (root.linear_velocity, root.angular_velocity) = (velocity, yaw_rps * Vec3::Z);
+            goes_straight(&state)
+        };
+        assert!(goes(Vec3::new(1.0, 0.5, 0.3), 1.4, 0.3), "27 degrees off, turning slowly, leaning");
+        assert!(!goes(Vec3::new(1.0, 0.6, 0.0), 0.0, 0.0), "31 degrees off");
+        assert!(!goes(Vec3::NEG_X, 0.0, 0.0) && !goes(Vec3::Y, 0.0, 0.0), "backwards, aside");
+        assert!(!goes(Vec3::X, 1.6, 0.0) && !goes(Vec3::X, -1.6, 0.0), "it turns");
     }
 
     #[test]

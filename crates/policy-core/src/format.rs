@@ -158,8 +158,8 @@ pub enum Storage {
     F16,
 }
 
-/// A policy.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+/// A policy. The default has neither name nor layers, and no variants: something to fill in.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct PolicyEntry {
     /// Unique name.
@@ -268,12 +268,12 @@ pub struct SkillEntry {
     /// Speed above which it does not start, metres per second; `None` for no such condition.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub maximum_speed_mps: Option<f32>,
-    /// True for a skill that starts as a foot comes down.
+    /// True for a skill that starts as a foot comes down, while the character goes straight ahead.
     #[serde(default, skip_serializing_if = "is_false")]
     pub on_footfall: bool,
-    /// Name of the skill that acts in its place out of a run; it has a `minimum_speed_mps`.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub running: Option<String>,
+    /// Names of skills that act in its place in the stride of a gait, at most 8: the first that may start. Each has a `minimum_speed_mps`.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub in_stride: Vec<String>,
     /// Seconds of the clock that the policy sees in place of the target; `None` for a policy that sees the target.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub clock_seconds: Option<f32>,

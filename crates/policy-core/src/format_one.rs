@@ -141,7 +141,7 @@ impl SkillOne {
             minimum_speed_mps: 0.0,
             maximum_speed_mps: None,
             on_footfall: false,
-            running: None,
+            in_stride: Vec::new(),
             clock_seconds: None,
             returns_to: self.returns_to,
             discriminator: self.discriminator,

@@ -12,8 +12,8 @@ use crate::route::RouteTable;
 /// Most policies in one graph.
 pub const MAX_NODES: usize = 64;
 
-/// One policy of the graph; its index is that of its parameters in the pack.
-#[derive(Clone, Debug, PartialEq)]
+/// One policy of the graph; its index is that of its parameters in the pack. The default has neither name nor variants: something to fill in.
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct Node {
     /// Unique name, such as `walk`.
     pub name: String,

@@ -49,11 +49,11 @@ pub enum PackError {
         /// The number in the pack.
         found: f32,
     },
-    /// A skill that can't act in place of another one out of a run.
+    /// A skill that can't act in place of another one in the stride of a gait.
     #[error(
-        "expected running of skill \"{skill}\" to be a skill with a minimum_speed_mps above 0 and no running of its own, found \"{found}\""
+        "expected in_stride of skill \"{skill}\" to be at most 8 skills with a minimum_speed_mps above 0 and no in_stride of their own, found \"{found}\""
     )]
-    Running {
+    InStride {
         /// The skill in whose place it is to act.
         skill: String,
         /// The skill that the pack names.

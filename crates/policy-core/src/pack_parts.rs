@@ -197,7 +197,7 @@ pub(crate) fn skill(entry: &SkillEntry, names: &[&str], m: &Manifest) -> Result<
         minimum_speed_mps: minimum_speed(entry, field())?,
         maximum_speed_mps: maximum_speed(entry, field())?,
         on_footfall: entry.on_footfall,
-        running: running(entry, m)?,
+        in_stride: in_stride(entry, m)?,
         clock_seconds: clock_seconds(entry, field())?,
         returns_to: find_node(field(), &entry.returns_to, names)?,
         discriminator: match &entry.discriminator {
@@ -230,16 +230,21 @@ fn maximum_speed(entry: &SkillEntry, owner: String) -> Result<f32, PackError> {
     }
 }
 
-/// What acts in place of a skill out of a run: one that needs a speed, and in whose place nothing else acts.
-fn running(entry: &SkillEntry, m: &Manifest) -> Result<Option<SkillId>, PackError> {
-    let Some(name) = &entry.running else { return Ok(None) };
-    let field = alloc::format!("running of skill \"{}\"", entry.name);
-    let id = SkillId::new(find("skill", field, name, &mut m.skills.iter().map(|s| s.name.as_str()))?);
-    let other = &m.skills[id.index()];
-    if other.minimum_speed_mps > 0.0 && other.running.is_none() {
-        return Ok(Some(id));
-    }
-    Err(PackError::Running { skill: entry.name.clone(), found: name.clone() })
+/// Most skills that act in place of one.
+const MOST_IN_STRIDE: usize = 8;
+
+/// What acts in place of a skill in the stride of a gait: skills that need a speed, and in whose place nothing else acts.
+fn in_stride(entry: &SkillEntry, m: &Manifest) -> Result<Vec<SkillId>, PackError> {
+    let one = |(index, name): (usize, &String)| {
+        let field = alloc::format!("in_stride of skill \"{}\"", entry.name);
+        let id = SkillId::new(find("skill", field, name, &mut m.skills.iter().map(|s| s.name.as_str()))?);
+        let other = &m.skills[id.index()];
+        if index < MOST_IN_STRIDE && other.minimum_speed_mps > 0.0 && other.in_stride.is_empty() {
+            return Ok(id);
+        }
+        Err(PackError::InStride { skill: entry.name.clone(), found: name.clone() })
+    };
+    entry.in_stride.iter().enumerate().map(one).collect()
 }
 
 fn clock_seconds(entry: &SkillEntry, owner: String) -> Result<Option<f32>, PackError> {

@@ -39,10 +39,12 @@ pub struct Skill {
     /// Horizontal speed of the root above which it does not start, metres per second: a pending skill waits until the character is
     /// slow enough, does not tip over, and has settled after another skill. Infinite for no such condition.
     pub maximum_speed_mps: f32,
-    /// True for one that starts as a foot comes down, once the character has settled after another skill: it continues a stride.
+    /// True for one that starts as a foot comes down, while the character goes straight ahead and once it has settled after another skill: it
+    /// continues a stride.
     pub on_footfall: bool,
-    /// What acts in its place where that one may start at once: a jump in the stride of a run. Reports go on naming this skill.
-    pub running: Option<SkillId>,
+    /// What acts in its place in the stride of a gait: the first of these that fits gait and speed, as a leap for a jump in a run. Reports go
+    /// on naming this skill.
+    pub in_stride: Vec<SkillId>,
     /// Seconds in which the clock of a timed skill runs once ([`clock_input`]); `None` for a skill that sees the target.
     pub clock_seconds: Option<f32>,
     /// Node that runs afterwards.
@@ -104,7 +106,7 @@ pub enum Refusal {
 pub struct SkillProgress {
     /// The skill.
     pub skill: SkillId,
-    /// The skill that acts: the same, or its [`Skill::running`].
+    /// The skill that acts: the same, or one of its [`Skill::in_stride`].
     pub acts: SkillId,
     /// Seconds since it started.
     pub seconds: f32,
@@ -123,7 +125,7 @@ impl SkillProgress {
 
     /// True where what acts is the skill, or what acts in its place in a pack of these skills; both must be among them.
     pub(crate) fn fits(&self, skills: &[Skill]) -> bool {
-        self.acts == self.skill || skills[self.skill.index()].running == Some(self.acts)
+        self.acts == self.skill || skills[self.skill.index()].in_stride.contains(&self.acts)
     }
 
     /// Takes one control tick: the discriminator's score, if there is one, and the root's height above the ground, metres.

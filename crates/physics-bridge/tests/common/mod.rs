@@ -103,19 +103,8 @@ fn policy_entry(name: &str, sizes: &[usize]) -> PolicyEntry {
     PolicyEntry {
         name: name.into(),
         layers: sizes.into(),
-        fall_height: None,
-        speed_mps: None,
-        strafes: false,
-        rough_ground: None,
-        agile: None,
-        steady: None,
-        resting: None,
-        starting: None,
-        stopping: None,
-        turning: None,
-        catching: None,
-        rising: None,
         origin: "made up".into(),
+        ..PolicyEntry::default()
     }
 }
 

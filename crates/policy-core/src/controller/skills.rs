@@ -10,7 +10,7 @@ use crate::blend::Blend;
 use crate::command::{Command, Goal};
 use crate::controller_state::ControllerState;
 use crate::fall::{Heights, fall_height, lies};
-use crate::footfall::foot_comes_down;
+use crate::footfall::{foot_comes_down, goes_straight};
 use crate::heading::Heading;
 use crate::ids::{NodeId, SkillId};
 use crate::observation::TARGET_RANGE_METRES;
@@ -155,7 +155,9 @@ impl Controller {
         let calm = most.is_infinite() || (speed <= most && self.state.settle_secs == 0.0 && stands());
         let in_range = speed >= least && calm;
         let in_step = !skill.on_footfall
-            || (self.state.settle_secs == 0.0 && foot_comes_down(self.pack.skeleton(), state));
+            || (self.state.settle_secs == 0.0
+                && goes_straight(state)
+                && foot_comes_down(self.pack.skeleton(), state));
         if in_range && in_step && skill.starts_from(self.state.report.position.nearest_node()) {
             return self.start_skill(SkillProgress { acts, ..SkillProgress::start(pending) });
         }
@@ -175,15 +177,15 @@ impl Controller {
         Command { goal: Goal::Stay, target, ..*command }
     }
 
-    /// What acts once a skill starts: the skill, or what acts in its place out of a run.
+    /// What acts once a skill starts: the skill, or what acts in its place in the stride of a gait.
     fn acting(&self, skill: SkillId, state: &CharacterState) -> SkillId {
         let skills = self.pack.skills();
         let node = self.state.report.position.nearest_node();
-        let fits = |running: &SkillId| {
-            let running = &skills[running.index()];
-            running.starts_from(node) && state.horizontal_speed() >= running.minimum_speed_mps
+        let fits = |other: &SkillId| {
+            let other = &skills[other.index()];
+            other.starts_from(node) && state.horizontal_speed() >= other.minimum_speed_mps
         };
-        skills[skill.index()].running.filter(fits).unwrap_or(skill)
+        skills[skill.index()].in_stride.iter().copied().find(fits).unwrap_or(skill)
     }
 
     /// The skill that is pending, or what would act in its place now.

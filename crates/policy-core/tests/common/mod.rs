@@ -130,18 +130,8 @@ pub fn manifest() -> Manifest {
         name: name.into(),
         layers: POLICY_SIZES.into(),
         fall_height: (!["crawl", "roll"].contains(&name)).then_some(0.5),
-        speed_mps: None,
-        strafes: false,
-        rough_ground: None,
-        agile: None,
-        steady: None,
-        resting: None,
-        starting: None,
-        stopping: None,
-        turning: None,
-        catching: None,
-        rising: None,
         origin: "made up".into(),
+        ..PolicyEntry::default()
     };
     let edge = |a: &str, b: &str| EdgeEntry {
         nodes: [a.into(), b.into()],
@@ -168,7 +158,7 @@ pub fn manifest() -> Manifest {
         minimum_speed_mps: 0.0,
         maximum_speed_mps: None,
         on_footfall: false,
-        running: None,
+        in_stride: Vec::new(),
         clock_seconds: None,
         returns_to: "walk".into(),
         discriminator: Some("walk".into()),

@@ -141,7 +141,7 @@ impl PackPlan {
         }
         let names: Vec<String> = self.skills.iter().map(|skill| skill.name.clone()).collect();
         for skill in &mut self.skills {
-            skill.running = skill.running.take().filter(|name| names.contains(name));
+            skill.in_stride.retain(|name| names.contains(name));
         }
         self.recovery = self.recovery.filter(|r| self.skills.iter().any(|s| s.name == *r));
         self

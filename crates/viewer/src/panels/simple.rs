@@ -146,9 +146,9 @@ fn caps(app: &App) -> Vec<Cap> {
         caps.push(cap(named("B", key(KeyAction::Roll)), "roll", told, pressed(Button::East)));
     }
     if let Some(jump) = pack.skill_named("jump") {
-        let told = match pack.skills()[jump.index()].running {
-            Some(_) => "Jumps, out of a run in its stride. One that walks stops first.",
-            None => "Jumps. A character that runs slows down first.",
+        let told = match pack.skills()[jump.index()].in_stride.is_empty() {
+            true => "Jumps. A character that runs slows down first.",
+            false => "Jumps, on the move in its stride.",
         };
         caps.push(cap(named("Y", key(KeyAction::Jump)), "jump", told, pressed(Button::North)));
     }

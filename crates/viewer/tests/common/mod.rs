@@ -96,7 +96,7 @@ pub fn pack_with_skills(threshold: f32) -> CharacterPack {
         minimum_speed_mps: 0.0,
         maximum_speed_mps: None,
         on_footfall: false,
-        running: None,
+        in_stride: Vec::new(),
         clock_seconds: None,
         name: name.into(),
         policy: policy.into(),
@@ -135,17 +135,8 @@ pub fn quadruped() -> CharacterPack {
         layers: layers.clone(),
         fall_height: Some(0.05),
         speed_mps: Some(speed_mps),
-        strafes: false,
-        rough_ground: None,
-        agile: None,
-        steady: None,
-        resting: None,
-        starting: None,
-        stopping: None,
-        turning: None,
-        catching: None,
-        rising: None,
         origin: "made up".into(),
+        ..PolicyEntry::default()
     };
     let manifest = Manifest {
         format: PACK_FORMAT.into(),

@@ -77,15 +77,7 @@ pub(super) fn policy_graph(
         fall_height: node.fall_height,
         speed_mps: Some(node.speed_mps),
         strafes: node.strafe.is_some(),
-        rough_ground: None,
-        agile: None,
-        steady: None,
-        resting: None,
-        starting: None,
-        stopping: None,
-        turning: None,
-        catching: None,
-        rising: None,
+        ..Node::default()
     };
     let policies = vec![policy; nodes.len()];
     PolicyGraph::from_parts(nodes.iter().map(known).collect(), &edges, paths, &policies)

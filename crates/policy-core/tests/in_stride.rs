@@ -1,4 +1,4 @@
-//! A skill in whose place another one acts out of a run: it starts in step, and reports name the skill that was asked for.
+//! A skill in whose place others act in the stride of a gait: they start in step, and reports name the skill that was asked for.
 
 mod common;
 
@@ -13,13 +13,14 @@ use policy_core::{
 
 const DT: f32 = 1.0 / 30.0;
 const LEAP_SECONDS: f32 = 0.5;
+const HOP_SECONDS: f32 = 0.3;
 
-/// A roll out of a stand, by a clock, with a leap in its place out of a jog.
+/// A roll out of a stand, by a clock, with a leap in its place out of a jog, and a hop out of a walk.
 fn manifest() -> Manifest {
     let mut manifest = common::manifest();
     let roll = &mut manifest.skills[0];
     (roll.entry, roll.maximum_speed_mps) = (vec!["idle".into()], Some(0.5));
-    roll.running = Some("leap".into());
+    roll.in_stride = vec!["leap".into(), "hop".into()];
     let mut leap = SkillEntry {
         name: "leap".into(),
         policy: "run".into(),
@@ -27,14 +28,23 @@ fn manifest() -> Manifest {
         minimum_speed_mps: 1.5,
         maximum_speed_mps: None,
         on_footfall: true,
-        running: None,
+        in_stride: Vec::new(),
         clock_seconds: Some(LEAP_SECONDS),
         returns_to: "jog".into(),
         discriminator: None,
         ..roll.clone()
     };
     leap.end.limit_seconds = LEAP_SECONDS;
-    manifest.skills.push(leap);
+    let mut hop = SkillEntry {
+        name: "hop".into(),
+        policy: "crouch".into(),
+        entry: vec!["walk".into()],
+        minimum_speed_mps: 0.6,
+        returns_to: "walk".into(),
+        ..leap.clone()
+    };
+    hop.end.limit_seconds = HOP_SECONDS;
+    manifest.skills.extend([leap, hop]);
     manifest
 }
 
@@ -43,7 +53,11 @@ fn pack() -> Arc<CharacterPack> {
 }
 
 fn jogging(pack: &Arc<CharacterPack>) -> Controller {
-    let start = pack.graph().node_named("jog").unwrap();
+    going(pack, "jog")
+}
+
+fn going(pack: &Arc<CharacterPack>, gait: &str) -> Controller {
+    let start = pack.graph().node_named(gait).unwrap();
     Controller::with_config(pack.clone(), ControllerConfig { start, ..ControllerConfig::default() })
 }
 
@@ -69,7 +83,7 @@ fn ask(controller: &mut Controller, state: &CharacterState, skill: Option<SkillI
 }
 
 #[test]
-fn out_of_a_run_another_skill_acts_from_a_footfall_on() {
+fn in_the_stride_of_a_run_another_skill_acts_from_a_footfall_on() {
     let pack = pack();
     let [roll, leap] = ["roll", "leap"].map(|name| pack.skill_named(name).unwrap());
     let mut controller = jogging(&pack);
@@ -103,6 +117,24 @@ fn out_of_a_run_another_skill_acts_from_a_footfall_on() {
 }
 
 #[test]
+fn in_the_stride_of_a_walk_the_one_that_fits_acts() {
+    let pack = pack();
+    let [roll, hop] = ["roll", "hop"].map(|name| pack.skill_named(name).unwrap());
+    let mut controller = going(&pack, "walk");
+    // As fast as a leap needs; what decides is the gait.
+    ask(&mut controller, &moving(1.6, 0.1), Some(roll));
+    let progress = controller.report().skill.unwrap();
+    assert_eq!((progress.skill, progress.acts), (roll, hop));
+    let mut ticks = 1;
+    while controller.report().skill_ended.is_none() {
+        ask(&mut controller, &moving(1.0, 0.1), None);
+        ticks += 1;
+    }
+    assert_eq!(ticks, (HOP_SECONDS / DT).round() as usize + 1, "its own clock ends it");
+    assert_eq!(controller.report().position.as_node(), pack.graph().node_named("walk"));
+}
+
+#[test]
 fn a_slow_character_comes_to_a_stand_for_the_skill_itself() {
     let pack = pack();
     let roll = pack.skill_named("roll").unwrap();
@@ -129,15 +161,16 @@ fn a_pack_says_what_it_lacks() {
         change(&mut wrong);
         CharacterPack::from_parts(wrong, common::tensors(-4.0)).unwrap_err().to_string()
     };
-    let nowhere = error(|m| m.skills[0].running = Some("hop".into()));
-    assert!(nowhere.contains("running of skill \"roll\"") && nowhere.contains("hop"), "{nowhere}");
+    let nowhere = error(|m| m.skills[0].in_stride = vec!["skip".into()]);
+    assert!(nowhere.contains("in_stride of skill \"roll\"") && nowhere.contains("skip"), "{nowhere}");
     for change in [
         (|m| m.skills[2].minimum_speed_mps = 0.0) as fn(&mut Manifest),
-        |m| m.skills[2].running = Some("get_up".into()),
-        |m| m.skills[0].running = Some("get_up".into()),
+        |m| m.skills[2].in_stride = vec!["get_up".into()],
+        |m| m.skills[0].in_stride = vec!["get_up".into()],
+        |m| m.skills[0].in_stride = vec!["leap".into(); 9],
     ] {
         let said = error(change);
-        assert!(said.contains("running of skill") && said.contains("minimum_speed_mps"), "{said}");
+        assert!(said.contains("in_stride of skill") && said.contains("minimum_speed_mps"), "{said}");
     }
 }
 
@@ -148,7 +181,7 @@ fn a_state_whose_skill_is_not_in_this_pack_is_refused_and_a_new_pack_drops_it() 
     ask(&mut controller, &moving(2.0, 0.1), pack.skill_named("roll"));
     let [saved, _] = saved_and_read(&controller);
     let mut without = manifest();
-    without.skills[0].running = None;
+    without.skills[0].in_stride.clear();
     let without = Arc::new(CharacterPack::from_parts(without, common::tensors(-4.0)).unwrap());
     let said = jogging(&without).restore(&saved).unwrap_err().to_string();
     assert!(said.contains("skill that acts"), "{said}");
