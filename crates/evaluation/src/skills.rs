@@ -270,7 +270,7 @@ fn comes_back(
         let report = eval.controller.report();
         if report.skill.is_some() {
             let feet = pack.skeleton().feet().iter();
-            let secs = (tick - start) as f32 * TICK_SECS;
+            let secs = tick.saturating_sub(start) as f32 * TICK_SECS;
             limbs = limbs.after(secs, feet.map(|foot| eval.character.clearance_of(*foot)));
             limbs = limbs.reaching(&eval.state, &hands);
         }

@@ -8,10 +8,10 @@ use crate::state::CharacterState;
 /// A foot that is slower than this share of the root stands.
 const STANDS_SHARE: f32 = 0.5;
 
-/// A character goes straight ahead while its velocity is within 30 degrees of its heading, whose cosine this is, ...
+/// Cosine of the largest angle between velocity and heading of a character that goes straight ahead: 30 degrees.
 const STRAIGHT_COS: f32 = 0.866;
 
-/// ... and it turns more slowly than this, radians per second.
+/// Fastest turn of such a character about the vertical, radians per second.
 const STRAIGHT_RPS: f32 = 1.5;
 
 /// True while a foot stands ahead of the root, along the root's velocity: in a run, for about 0.1 s from touch-down on.
@@ -29,7 +29,7 @@ pub fn foot_comes_down(skeleton: &Skeleton, state: &CharacterState) -> bool {
     skeleton.feet().is_empty() || skeleton.feet().iter().copied().any(comes_down)
 }
 
-/// True for a character that goes where it faces and hardly turns: what continues a stride straight ahead may begin.
+/// True for a character that goes where it faces and hardly turns. Pressed in a turn or while it strafed, jumps in a stride fell.
 #[must_use]
 pub(crate) fn goes_straight(state: &CharacterState) -> bool {
     let root = state.root();

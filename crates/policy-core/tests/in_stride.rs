@@ -121,8 +121,16 @@ fn in_the_stride_of_a_walk_the_one_that_fits_acts() {
     let pack = pack();
     let [roll, hop] = ["roll", "hop"].map(|name| pack.skill_named(name).unwrap());
     let mut controller = going(&pack, "walk");
+    let mut turns = moving(1.6, 0.1);
+    turns.bodies[0].angular_velocity = 2.0 * Vec3::Z;
+    ask(&mut controller, &turns, Some(roll));
+    assert_eq!(
+        (controller.report().skill, controller.report().pending_skill),
+        (None, Some(roll)),
+        "it turns"
+    );
     // As fast as a leap needs; what decides is the gait.
-    ask(&mut controller, &moving(1.6, 0.1), Some(roll));
+    ask(&mut controller, &moving(1.6, 0.1), None);
     let progress = controller.report().skill.unwrap();
     assert_eq!((progress.skill, progress.acts), (roll, hop));
     let mut ticks = 1;

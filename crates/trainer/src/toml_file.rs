@@ -53,7 +53,7 @@ mod tests {
     #[derive(Debug, serde::Deserialize)]
     #[serde(deny_unknown_fields)]
     struct Speeds {
-        #[allow(dead_code, reason = "parsed and not read")]
+        #[expect(dead_code, reason = "parsed and not read")]
         walk: f32,
     }
 

@@ -123,7 +123,7 @@ fn a_timed_skill_has_the_clock_of_its_recipe() {
             assert_eq!(learned, skill.clock_seconds.unwrap_or(0.0), "{}", skill.name);
             let starts = phase.environment.reset.in_play.and_then(|start| start.maximum_speed_mps);
             let most = skill.maximum_speed_mps.unwrap_or(f32::INFINITY);
-            // A jump that learned to start slowly also starts at a footfall of a walk, which `trainer evaluate` measures.
+            // One that starts at a footfall is as fast as its gait.
             assert!(
                 skill.on_footfall || starts.is_none_or(|learned| most <= learned),
                 "{} starts faster than it learned",

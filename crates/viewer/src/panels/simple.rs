@@ -148,7 +148,7 @@ fn caps(app: &App) -> Vec<Cap> {
     if let Some(jump) = pack.skill_named("jump") {
         let told = match pack.skills()[jump.index()].in_stride.is_empty() {
             true => "Jumps. A character that runs slows down first.",
-            false => "Jumps, on the move in its stride.",
+            false => "Jumps. On the move it does so in its stride.",
         };
         caps.push(cap(named("Y", key(KeyAction::Jump)), "jump", told, pressed(Button::North)));
     }
