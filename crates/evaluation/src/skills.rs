@@ -293,8 +293,9 @@ mod tests {
         let after =
             |limbs: Limbs, (secs, heights): (f32, &[f32; 2])| limbs.after(secs, heights.iter().copied());
         let feet = [0.1, 0.2, 0.3, 0.4].into_iter().zip(&kick).fold(Limbs::default(), after);
-        assert_eq!((feet.highest, feet.lower, feet.air_secs), (0.9, 0.02, TICK_SECS));
-        assert_eq!(feet.longest, Some([0.3, TICK_SECS]));
+        let longest = Some([0.3, TICK_SECS]);
+        let kicked = Limbs { highest: 0.9, lower: 0.02, air_secs: TICK_SECS, longest, ..Limbs::default() };
+        assert_eq!(feet, kicked, "the last tick is on the ground");
         // A short flight, and a longer one.
         let heights = [0.02, 0.0, 0.03, 0.1, 0.03, 0.0, 0.02].map(|height| [height; 2]);
         let times = (0..).map(|tick| tick as f32 * TICK_SECS);

@@ -8,8 +8,8 @@ use crate::state::CharacterState;
 /// A foot that is slower than this share of the root stands.
 const STANDS_SHARE: f32 = 0.5;
 
-/// Cosine of the largest angle between velocity and heading of a character that goes straight ahead: 30 degrees.
-const STRAIGHT_COS: f32 = 0.866;
+/// Largest angle between velocity and heading of a character that goes straight ahead, radians.
+const STRAIGHT_RADIANS: f32 = core::f32::consts::FRAC_PI_6;
 
 /// Fastest turn of such a character about the vertical, radians per second.
 const STRAIGHT_RPS: f32 = 1.5;
@@ -33,9 +33,8 @@ pub fn foot_comes_down(skeleton: &Skeleton, state: &CharacterState) -> bool {
 #[must_use]
 pub(crate) fn goes_straight(state: &CharacterState) -> bool {
     let root = state.root();
-    let velocity = root.linear_velocity.truncate();
-    let ahead = Heading::from_rotation(root.rotation).direction();
-    ahead.dot(velocity) >= STRAIGHT_COS * velocity.length() && root.angular_velocity.z.abs() <= STRAIGHT_RPS
+    let aside = Heading::from_rotation(root.rotation).angle_off(root.linear_velocity.truncate());
+    aside <= STRAIGHT_RADIANS && root.angular_velocity.z.abs() <= STRAIGHT_RPS
 }
 
 #[cfg(test)]

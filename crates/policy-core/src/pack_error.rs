@@ -51,7 +51,7 @@ pub enum PackError {
     },
     /// A skill that can't act in place of another one in the stride of a gait.
     #[error(
-        "expected in_stride of skill \"{skill}\" to be at most 8 skills with a minimum_speed_mps above 0 and no in_stride of their own, found \"{found}\""
+        "expected in_stride of skill \"{skill}\" to be skills with a minimum_speed_mps above 0 and no in_stride of their own, found \"{found}\""
     )]
     InStride {
         /// The skill in whose place it is to act.

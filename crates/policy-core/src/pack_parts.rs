@@ -22,6 +22,9 @@ use crate::skill::{EndCondition, Skill};
 /// Most skills and most discriminators of a pack.
 const MAX_SKILLS: usize = 64;
 
+/// Most skills that act in place of one.
+const MAX_IN_STRIDE: usize = 8;
+
 /// Checks the fixed fields, counts and names: all that bounds what the rest may cost.
 pub(crate) fn check_manifest(m: &Manifest) -> Result<(), PackError> {
     let field = |field, expected: String, found: String| match expected == found {
@@ -46,7 +49,9 @@ pub(crate) fn check_manifest(m: &Manifest) -> Result<(), PackError> {
     // Of paths and skills that are not too many themselves.
     let paths = m.paths.iter().map(|path| ("policies of a path", path.nodes.len(), MAX_NODES));
     let entries = m.skills.iter().map(|skill| ("entries of a skill", skill.entry.len(), MAX_NODES));
-    let mut counts = counts.into_iter().chain(paths).chain(entries);
+    let in_stride =
+        m.skills.iter().map(|skill| ("skills in_stride of one", skill.in_stride.len(), MAX_IN_STRIDE));
+    let mut counts = counts.into_iter().chain(paths).chain(entries).chain(in_stride);
     if let Some((what, found, most)) = counts.find(|(_, found, most)| found > most) {
         return Err(PackError::TooMany { what, most, found });
     }
@@ -230,21 +235,18 @@ fn maximum_speed(entry: &SkillEntry, owner: String) -> Result<f32, PackError> {
     }
 }
 
-/// Most skills that act in place of one.
-const MOST_IN_STRIDE: usize = 8;
-
 /// What acts in place of a skill in the stride of a gait: skills that need a speed, and in whose place nothing else acts.
 fn in_stride(entry: &SkillEntry, m: &Manifest) -> Result<Vec<SkillId>, PackError> {
-    let one = |(index, name): (usize, &String)| {
+    let one = |name: &String| {
         let field = alloc::format!("in_stride of skill \"{}\"", entry.name);
         let id = SkillId::new(find("skill", field, name, &mut m.skills.iter().map(|s| s.name.as_str()))?);
         let other = &m.skills[id.index()];
-        if index < MOST_IN_STRIDE && other.minimum_speed_mps > 0.0 && other.in_stride.is_empty() {
+        if other.minimum_speed_mps > 0.0 && other.in_stride.is_empty() {
             return Ok(id);
         }
         Err(PackError::InStride { skill: entry.name.clone(), found: name.clone() })
     };
-    entry.in_stride.iter().enumerate().map(one).collect()
+    entry.in_stride.iter().map(one).collect()
 }
 
 fn clock_seconds(entry: &SkillEntry, owner: String) -> Result<Option<f32>, PackError> {

@@ -175,7 +175,6 @@ fn a_pack_says_what_it_lacks() {
         (|m| m.skills[2].minimum_speed_mps = 0.0) as fn(&mut Manifest),
         |m| m.skills[2].in_stride = vec!["get_up".into()],
         |m| m.skills[0].in_stride = vec!["get_up".into()],
-        |m| m.skills[0].in_stride = vec!["leap".into(); 9],
     ] {
         let said = error(change);
         assert!(said.contains("in_stride of skill") && said.contains("minimum_speed_mps"), "{said}");

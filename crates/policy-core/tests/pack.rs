@@ -89,6 +89,8 @@ fn long_lists_are_refused_before_they_are_looked_up() {
     };
     assert_eq!(most(to_and_fro), ("policies of a path", 64, 65));
     assert_eq!(most(|m| m.skills[0].entry = vec!["walk".into(); 65]), ("entries of a skill", 64, 65));
+    let in_stride = |m: &mut Manifest| m.skills[0].in_stride = vec!["roll".into(); 9];
+    assert_eq!(most(in_stride), ("skills in_stride of one", 8, 9));
 }
 
 /// Bytes of a pack without a checksum and with its header's text changed.

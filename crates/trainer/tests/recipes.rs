@@ -123,7 +123,7 @@ fn a_timed_skill_has_the_clock_of_its_recipe() {
             assert_eq!(learned, skill.clock_seconds.unwrap_or(0.0), "{}", skill.name);
             let starts = phase.environment.reset.in_play.and_then(|start| start.maximum_speed_mps);
             let most = skill.maximum_speed_mps.unwrap_or(f32::INFINITY);
-            // One that starts at a footfall is as fast as its gait.
+            // One that starts at a footfall is as fast as its gait: see below.
             assert!(
                 skill.on_footfall || starts.is_none_or(|learned| most <= learned),
                 "{} starts faster than it learned",
@@ -131,6 +131,13 @@ fn a_timed_skill_has_the_clock_of_its_recipe() {
             );
             let runs = phase.environment.reset.in_play.is_some_and(|start| start.out_of == OutOf::Run);
             assert!(!runs || skill.minimum_speed_mps == RUNS_MPS, "{}", skill.name);
+        }
+        let last = recipe.phases.last().and_then(|phase| phase.environment.reset.in_play);
+        if let Some(learned) = last.and_then(|start| start.maximum_speed_mps).filter(|_| skill.on_footfall) {
+            let starts_from = |gait: &&PlannedPolicy| skill.entry.contains(&gait.name);
+            let speeds = plan.policies.iter().filter(starts_from).filter_map(|gait| gait.speed_mps);
+            let slowest = speeds.fold(f32::INFINITY, f32::min);
+            assert!(slowest <= learned, "{} has not learned its slowest gait", skill.name);
         }
         timed += usize::from(skill.clock_seconds.is_some());
     }
