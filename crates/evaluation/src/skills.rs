@@ -6,16 +6,18 @@ use glam::Vec2;
 use physics::{Model, PhysicsCharacter};
 use policy_core::contract::WALKING_START_MPS;
 use policy_core::training::TARGET_RANGE_METRES;
-use policy_core::{
-    BodyId, CharacterPack, CharacterState, Command, ControllerConfig, Heading, Skeleton, SkillEnd, SkillId,
-};
+use policy_core::{CharacterPack, CharacterState, Command, ControllerConfig, Heading, SkillEnd, SkillId};
 use random::Rng;
 use random::limp::drop_limp;
 use rayon::prelude::*;
 use serde::Serialize;
 
 use super::eval_character::{EvalCharacter, SETTLE_SECS};
-use crate::trial::{OFF_GROUND_METRES, TICK_SECS, median};
+use crate::trial::{TICK_SECS, median};
+
+mod limbs;
+
+use limbs::{Limbs, hands};
 
 /// Seconds within which a dropped character must stand.
 const GET_UP_SECS: f32 = 5.0;
@@ -72,51 +74,8 @@ pub struct SkillReport {
     pub leaves_s: Option<f32>,
     /// Greatest horizontal distance of a hand ahead of the root, metres: how far it punches. `None` without bodies of such a name.
     pub hand_m: Option<f32>,
-}
-
-/// What the limbs do while a skill runs.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-struct Limbs {
-    highest: f32,
-    lower: f32,
-    air_secs: f32,
-    /// When the flight that lasts began, and how long it has lasted, seconds.
-    flight: Option<[f32; 2]>,
-    /// The longest one.
-    longest: Option<[f32; 2]>,
-    hand: Option<f32>,
-}
-
-impl Limbs {
-    /// With the hands where they are now.
-    fn reaching(mut self, state: &CharacterState, hands: &[BodyId]) -> Self {
-        let root = state.root();
-        let ahead = Heading::from_rotation(root.rotation).direction();
-        for hand in hands {
-            let from_root = (state.body(*hand).position - root.position).truncate().dot(ahead);
-            self.hand = Some(self.hand.map_or(from_root, |most| most.max(from_root)));
-        }
-        self
-    }
-
-    /// So many seconds after the press, with the lowest points of the feet so high above the ground.
-    fn after(self, secs: f32, heights: impl Iterator<Item = f32>) -> Self {
-        let [low, high] = heights.fold([f32::INFINITY, 0.0], |[low, high], h| [h.min(low), h.max(high)]);
-        let low = if low.is_finite() { low } else { 0.0 };
-        let flight = (low > OFF_GROUND_METRES).then(|| {
-            let [begun, lasted] = self.flight.unwrap_or([secs, 0.0]);
-            [begun, lasted + TICK_SECS]
-        });
-        let longer = flight.filter(|[_, lasts]| self.longest.is_none_or(|[_, longest]| *lasts > longest));
-        Self {
-            highest: self.highest.max(high),
-            lower: self.lower.max(low),
-            air_secs: self.air_secs + if flight.is_some() { TICK_SECS } else { 0.0 },
-            flight,
-            longest: longer.or(self.longest),
-            ..self
-        }
-    }
+    /// Greatest angle between the heading of the root and that at the press, degrees: how far a jump twists.
+    pub turned_degrees: Option<f32>,
 }
 
 /// Limp drops after which the character stands within 5 s and still does a second later. `None` when the pack has no skill
@@ -231,6 +190,7 @@ pub fn measure_skill(
         air_s: of(|limbs| Some(limbs.air_secs)),
         leaves_s: of(|limbs| limbs.longest.map(|[begins, _]| begins)),
         hand_m: of(|limbs| limbs.hand),
+        turned_degrees: of(|limbs| Some(limbs.turned.to_degrees())),
     }
 }
 
@@ -238,12 +198,6 @@ pub fn measure_skill(
 pub(crate) fn ended_well(pack: &CharacterPack, skill: SkillId, end: SkillEnd) -> bool {
     let by_time = pack.skills()[skill.index()].discriminator.is_none();
     end == if by_time { SkillEnd::TimeLimit } else { SkillEnd::Recognised }
-}
-
-/// Bodies whose names end in `hand`.
-fn hands(skeleton: &Skeleton) -> Vec<BodyId> {
-    let bodies = skeleton.bodies().iter().enumerate();
-    bodies.filter(|(_, body)| body.name.ends_with("hand")).map(|(i, _)| BodyId::new(i)).collect()
 }
 
 fn comes_back(
@@ -272,7 +226,7 @@ fn comes_back(
             let feet = pack.skeleton().feet().iter();
             let secs = tick.saturating_sub(start) as f32 * TICK_SECS;
             limbs = limbs.after(secs, feet.map(|foot| eval.character.clearance_of(*foot)));
-            limbs = limbs.reaching(&eval.state, &hands);
+            limbs = limbs.reaching(&eval.state, &hands).turning(&eval.state);
         }
         if let Some((skill, end)) = report.skill_ended
             && ended_well(pack, skill, end)
@@ -281,28 +235,4 @@ fn comes_back(
         }
     }
     (ended.is_some_and(|secs| secs <= SKILL_SECS) && eval.pelvis_height() > 0.65, ended, limbs)
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn a_kick_lifts_one_foot_and_a_jump_both() {
-        let kick = [[0.0, 0.0], [0.0, 0.9], [0.02, 0.5], [0.0, 0.0]];
-        let after =
-            |limbs: Limbs, (secs, heights): (f32, &[f32; 2])| limbs.after(secs, heights.iter().copied());
-        let feet = [0.1, 0.2, 0.3, 0.4].into_iter().zip(&kick).fold(Limbs::default(), after);
-        let longest = Some([0.3, TICK_SECS]);
-        let kicked = Limbs { highest: 0.9, lower: 0.02, air_secs: TICK_SECS, longest, ..Limbs::default() };
-        assert_eq!(feet, kicked, "the last tick is on the ground");
-        // A short flight, and a longer one.
-        let heights = [0.02, 0.0, 0.03, 0.1, 0.03, 0.0, 0.02].map(|height| [height; 2]);
-        let times = (0..).map(|tick| tick as f32 * TICK_SECS);
-        let jump = times.zip(&heights).fold(Limbs::default(), after);
-        assert_eq!(jump.longest.map(|[begins, _]| begins), Some(2.0 * TICK_SECS));
-        assert!((jump.longest.unwrap()[1] - 3.0 * TICK_SECS).abs() < 1e-6 && jump.lower == 0.1);
-        let without_feet = Limbs::default().after(0.1, std::iter::empty());
-        assert_eq!(without_feet, Limbs::default(), "a character without feet");
-    }
 }

@@ -83,11 +83,8 @@ fn every_number_has_a_range() {
     let start =
         crate::env::HandOverConfig { skill: "get_up".into(), share: 0.5, out_of: vec!["walk".into()] };
     reset.hand_over = vec![start];
-    reset.in_play = Some(crate::env::InPlayConfig {
-        share: 0.5,
-        maximum_speed_mps: Some(0.7),
-        out_of: crate::env::OutOf::Anything,
-    });
+    reset.in_play =
+        Some(crate::env::InPlayConfig { share: 0.5, maximum_speed_mps: Some(0.7), ..Default::default() });
     recipe.phases[0].environment.termination.min_heights.insert("pelvis".into(), 0.5);
     recipe.check_ranges(Path::new("x.toml")).expect("a range for every field and defaults within them");
 }

@@ -11,8 +11,9 @@ use super::{Gait, LowPass, Trial, ticks};
 /// Longest way through the graph to a gait, seconds.
 const REACH_SECS: f32 = 15.0;
 
-/// Seconds in the gait before a trial begins; the second is drawn at random and gives the phase.
-const SETTLE_SECS: [f32; 2] = [2.0, 1.5];
+/// Seconds in the gait before a trial begins, and the range of a random time more, which gives the phase: a whole cycle of a crawl, the longest. From a
+/// part of it turns to one side would seem slower.
+const SETTLE_SECS: [f32; 2] = [2.0, 2.6];
 
 /// Largest angle from x at which a character sets off, radians.
 const MOST_ANGLE: f32 = 0.2;

@@ -42,11 +42,12 @@ const POLAR: [f32; 3] = [1.0, -1.0, 1.0];
 const AXIAL: [f32; 3] = [-1.0, 1.0, -1.0];
 
 /// The mirror image in the plane of x and z: a body, and its hinges, go to the one whose name has `left` for `right`.
-/// Inputs are those of [`policy_core::observe_into`] after `normaliser`, and the target.
+/// Inputs are those of [`policy_core::observe_into`] after `normaliser`, and the target, or where the policy is `timed` its clock, which looks the
+/// same in the mirror.
 ///
 /// # Errors
 /// When a name is missing on one side, hinges are no mirror images of each other, or the normaliser is not symmetric.
-pub fn mirror_of(skeleton: &Skeleton, normaliser: &Normaliser) -> Result<Mirror, MirrorError> {
+pub fn mirror_of(skeleton: &Skeleton, normaliser: &Normaliser, timed: bool) -> Result<Mirror, MirrorError> {
     let missing = |found: &str| MirrorError::Missing { found: found.to_owned(), expected: swapped(found) };
     let partners = skeleton.bodies().iter().map(|body| {
         let partner = skeleton.body_named(&swapped(&body.name));
@@ -75,7 +76,7 @@ pub fn mirror_of(skeleton: &Skeleton, normaliser: &Normaliser) -> Result<Mirror,
         }
     }
     let target = inputs.len();
-    inputs.extend([(target, 1.0), (target + 1, -1.0)]);
+    inputs.extend([(target, 1.0), (target + 1, if timed { 1.0 } else { -1.0 })]);
     Ok(Mirror { inputs: SignedPermutation::new(inputs), actions: mirrored_joints(skeleton)? })
 }
 
@@ -135,7 +136,7 @@ mod tests {
     fn what_a_mirrored_character_sees_is_the_mirror_image_of_what_it_saw() {
         let (model, _, normalisers) = shipped();
         let skeleton = model.skeleton();
-        let mirror = mirror_of(skeleton, &normalisers.observation).unwrap();
+        let mirror = mirror_of(skeleton, &normalisers.observation, false).unwrap();
         let seen = |clip: &Clip, target: [f32; 2]| {
             let state = fit(clip, &model).unwrap().states[5].clone();
             let mut seen = vec![0.0; skeleton.observation_len()];
@@ -153,10 +154,20 @@ mod tests {
     }
 
     #[test]
+    fn a_clock_looks_the_same_in_the_mirror_and_a_target_does_not() {
+        let (model, _, normalisers) = shipped();
+        let target = model.skeleton().observation_len();
+        for (timed, sign) in [(false, -1.0), (true, 1.0)] {
+            let inputs = mirror_of(model.skeleton(), &normalisers.observation, timed).unwrap().inputs;
+            assert_eq!((inputs.entry(target), inputs.entry(target + 1)), ((target, 1.0), (target + 1, sign)));
+        }
+    }
+
+    #[test]
     fn knees_swap_and_the_trunk_leans_to_the_other_side() {
         let (model, _, normalisers) = shipped();
         let skeleton = model.skeleton();
-        let mirror = mirror_of(skeleton, &normalisers.observation).unwrap();
+        let mirror = mirror_of(skeleton, &normalisers.observation, false).unwrap();
         let entry = |name: &str| {
             let (from, sign) = mirror.actions.entry(skeleton.joint_named(name).unwrap().index());
             (skeleton.joints()[from].name.clone(), sign)
@@ -174,7 +185,7 @@ mod tests {
         mean[2] = 0.5; // the torso aside
         let one_sided =
             Normaliser::from_mean_and_deviation(&mean, &vec![1.0; skeleton.observation_len()]).unwrap();
-        let error = mirror_of(&skeleton, &one_sided).unwrap_err();
+        let error = mirror_of(&skeleton, &one_sided, false).unwrap_err();
         assert_eq!(error, MirrorError::Normaliser { input: 2, other: 2 });
     }
 }

@@ -139,10 +139,13 @@ impl Env {
         }
     }
 
-    /// Gives the command its first target, from where the character is.
+    /// Gives the command its first target, from where the character is; a stick of a timed skill points ahead, for the skill does not see it.
     fn aim(&mut self, context: &EnvContext<'_>) {
-        let at = (self.root_position(), self.heading().angle());
-        self.command.aim(&context.config.command, context.graph, at, &mut self.rng);
+        let (position, radians) = (self.root_position(), self.heading().angle());
+        self.command.aim(&context.config.command, context.graph, (position, radians), &mut self.rng);
+        if context.config.command.clock_seconds > 0.0 {
+            self.command.go_straight(context.graph, position, radians);
+        }
     }
 
     /// A tick of the body before the episode begins; false when the physics diverged.

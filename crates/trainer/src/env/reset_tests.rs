@@ -48,6 +48,25 @@ fn a_standing_start_is_upright_and_moves_ahead() {
 }
 
 #[test]
+fn a_timed_skill_is_to_go_straight_ahead() {
+    let (model, normalisers, clips) = humanoid_with(still(46));
+    let mut config = EnvironmentConfig::default();
+    (config.command.clock_seconds, config.reward.tracking_weight) = (1.5, 0.9);
+    (config.command.stick_share, config.command.stop_share) = (1.0, 0.0);
+    config.reset.standing_share = 0.3;
+    let setting = Setting::alone("kick", (model, normalisers), config);
+    let demonstrations = [&clips];
+    let context = setting.context(&demonstrations);
+    let mut env = Env::new(&setting.model, &context, Rng::new(6, 0));
+    for _ in 0..16 {
+        env.reset(&context, false);
+        let ahead = env.heading().direction();
+        let way = (env.command.target - env.root_position()).normalize();
+        assert!(ahead.distance(way) < 1e-3, "it faces {ahead} and is to go {way}");
+    }
+}
+
+#[test]
 fn a_timed_skill_sees_the_second_of_its_clip_in_every_start() {
     let (model, normalisers, clips) = humanoid_with(still(46));
     let mut config = EnvironmentConfig::default();

@@ -171,12 +171,6 @@ impl Recipe {
                 command.clock_seconds.to_string(),
             ),
             (
-                command.clock_seconds == 0.0 || ppo.symmetry == 0.0,
-                "ppo.symmetry",
-                "0 beside a clock, which takes the place of the target",
-                ppo.symmetry.to_string(),
-            ),
-            (
                 reset.in_play.is_none_or(|in_play| {
                     let stands = in_play.maximum_speed_mps.is_some();
                     let runs = in_play.out_of == OutOf::Run;
@@ -187,17 +181,17 @@ impl Recipe {
                 format!("{:?}", reset.in_play),
             ),
             (
-                reset.in_play.is_none_or(|in_play| in_play.out_of != OutOf::Push)
+                reset.in_play.is_none_or(|in_play| !in_play.out_of.pushes())
                     || (phase.environment.randomisation.push_newton > 0.0 && command.stick_share == 1.0),
                 "environment.reset.in_play.out_of",
-                "\"push\" beside a randomisation.push_newton above 0 and a command.stick_share of 1 alone",
+                "a push beside a randomisation.push_newton above 0 and a command.stick_share of 1 alone",
                 format!("{:?}", reset.in_play),
             ),
             (
-                reset.in_play.is_none_or(|in_play| in_play.out_of != OutOf::Push)
+                reset.in_play.is_none_or(|in_play| !in_play.out_of.pushes())
                     || phase.environment.meetings.share == 0.0,
                 "environment.reset.in_play.out_of",
-                "no \"push\" beside meetings: the push would not reach the world in which they meet",
+                "no push beside meetings: it would not reach the world in which they meet",
                 format!("{:?}", reset.in_play),
             ),
             (

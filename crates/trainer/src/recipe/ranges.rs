@@ -78,6 +78,8 @@ const RANGES: &[(&str, f64, f64)] = &[
     ("environment.reset.pre_failure_share", 0.0, 1.0),
     ("environment.reset.in_play.share", 0.0, 1.0),
     ("environment.reset.in_play.maximum_speed_mps", 0.1, 20.0),
+    ("environment.reset.in_play.least_push", 0.0, 1.0),
+    ("environment.reset.in_play.from_behind_share", 0.0, 1.0),
     ("environment.reset.hand_over.share", 0.0, 1.0),
     ("environment.randomisation.terrain_metres", 0.0, 0.5),
     ("environment.randomisation.step_metres", 0.0, 0.5),

@@ -54,11 +54,7 @@ const STRIDE_SECS: f32 = 1.2;
 /// Time from the beginning of a push to a start that catches it, seconds: a game takes it for one once the body tips over.
 const PUSHED_SECS: [f32; 2] = [0.07, 0.2];
 
-/// Smallest force of such a push, as a share of the largest.
-const LEAST_PUSH: f32 = 0.3;
-
-/// Share of such pushes that come from behind, within this angle, radians: they are the hardest to catch out of a run.
-const FROM_BEHIND_SHARE: f32 = 0.5;
+/// A push from behind comes within this angle, radians.
 const FROM_BEHIND_RADIANS: f32 = 0.4;
 
 /// Speed of a character that stands, metres per second.
@@ -107,7 +103,7 @@ impl Env {
             return self.begin_in_play(context, way);
         }
         let Some(way) = self.play_up_to_start(context, &config, played.clone()) else { return false };
-        let way = Some(way.to_angle()).filter(|_| config.out_of == OutOf::Push);
+        let way = Some(way.to_angle()).filter(|_| config.out_of.pushes());
         if !self.begin_in_play(context, way) {
             return false;
         }
@@ -130,15 +126,15 @@ impl Env {
         let stand = graph.node_named(OutOf::Stand.nodes()[0]).unwrap_or_default();
         controller.place_at(GraphPosition::node(stand));
         let strides = config.out_of.strides();
-        let (pushes, mut takes_over_at) = (config.out_of == OutOf::Push, None);
+        let (pushes, mut takes_over_at) = (config.out_of.pushes(), None);
         let runs = config.out_of == OutOf::Run;
         let skeleton = pack.skeleton();
         let nodes = config.out_of.nodes();
         let out_of = graph.node_named(nodes[self.rng.index(nodes.len())]).unwrap_or(stand);
         let low = config.out_of == OutOf::Low;
-        let [shortest, longest] = match low {
-            true => LOW_SECS,
-            false => [if strides { STRIDE_SECS } else { 0.3 }, WAY_SECS],
+        let [shortest, longest] = match config.out_of {
+            OutOf::Low | OutOf::PushInCrouch => LOW_SECS,
+            _ => [if strides { STRIDE_SECS } else { 0.3 }, WAY_SECS],
         };
         let way_secs = if out_of == stand { 0.0 } else { self.rng.range(shortest, longest) };
         let goes = way_secs > 0.0 && self.rng.chance(0.5);
@@ -182,7 +178,7 @@ impl Env {
             if ready && secs >= settled_at.max(way_secs + rest_secs) {
                 match takes_over_at {
                     None if pushes => {
-                        self.push_start(context, direction);
+                        self.push_start(context, config, direction);
                         takes_over_at = Some(secs + self.rng.range(PUSHED_SECS[0], PUSHED_SECS[1]));
                     }
                     Some(at) if secs < at => {}
@@ -212,10 +208,10 @@ impl Env {
         None
     }
 
-    /// Begins a push from any side, often from behind a character that goes this way.
-    fn push_start(&mut self, context: &EnvContext<'_>, way: Vec2) {
-        let newton = self.rng.range(LEAST_PUSH, 1.0) * context.config.randomisation.push_newton;
-        let off_way = match self.rng.chance(FROM_BEHIND_SHARE) {
+    /// Begins a push on a character that goes this way.
+    fn push_start(&mut self, context: &EnvContext<'_>, config: &InPlayConfig, way: Vec2) {
+        let newton = self.rng.range(config.least_push, 1.0) * context.config.randomisation.push_newton;
+        let off_way = match self.rng.chance(config.from_behind_share) {
             true => self.rng.range(-FROM_BEHIND_RADIANS, FROM_BEHIND_RADIANS),
             false => self.rng.angle(),
         };

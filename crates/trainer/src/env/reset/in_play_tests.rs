@@ -8,11 +8,7 @@ use super::*;
 
 /// Speeds at the starts of 16 tries of a skill, and how many of them track a clip.
 fn starts(speed_mps: f32, maximum_speed_mps: Option<f32>, tracking_weight: f32) -> (Vec<f32>, usize) {
-    starts_of(
-        speed_mps,
-        InPlayConfig { share: 1.0, maximum_speed_mps, out_of: OutOf::Anything },
-        tracking_weight,
-    )
+    starts_of(speed_mps, InPlayConfig { maximum_speed_mps, ..Default::default() }, tracking_weight)
 }
 
 fn starts_of(speed_mps: f32, in_play: InPlayConfig, tracking_weight: f32) -> (Vec<f32>, usize) {
@@ -65,7 +61,7 @@ fn a_variant_that_stands_starts_where_the_stick_is_let_go_and_one_that_moves_any
 
 #[test]
 fn a_variant_that_sets_off_starts_out_of_a_stand_alone() {
-    let in_play = InPlayConfig { share: 1.0, maximum_speed_mps: None, out_of: OutOf::Stand };
+    let in_play = InPlayConfig { out_of: OutOf::Stand, ..Default::default() };
     let (speeds, _) = starts_of(1.2, in_play, 0.0);
     assert!(speeds.len() >= 12 && speeds.iter().all(|speed| *speed < STANDS_MPS), "{speeds:?}");
 }
@@ -73,7 +69,7 @@ fn a_variant_that_sets_off_starts_out_of_a_stand_alone() {
 #[test]
 fn variants_that_stop_or_turn_start_in_the_middle_of_a_stride() {
     for speed_mps in [0.0, 1.5] {
-        let in_play = InPlayConfig { share: 1.0, maximum_speed_mps: None, out_of: OutOf::Stride };
+        let in_play = InPlayConfig { out_of: OutOf::Stride, ..Default::default() };
         let (speeds, _) = starts_of(speed_mps, in_play, 0.0);
         assert!(speeds.len() >= 12 && speeds.iter().all(|speed| *speed > 0.4), "{speeds:?}");
         assert!(speeds.iter().any(|speed| *speed > 1.5), "out of a jog or a run too: {speeds:?}");
@@ -84,7 +80,7 @@ fn variants_that_stop_or_turn_start_in_the_middle_of_a_stride() {
 fn a_skill_out_of_a_run_starts_as_a_foot_comes_down_and_tracks_its_clip() {
     let mut config = EnvironmentConfig::default();
     config.reward.tracking_weight = 0.9;
-    let in_play = InPlayConfig { share: 1.0, maximum_speed_mps: None, out_of: OutOf::Run };
+    let in_play = InPlayConfig { out_of: OutOf::Run, ..Default::default() };
     let mut starts = 0;
     start_each(config, in_play, |env| {
         let velocity = env.state.root().linear_velocity.truncate();
@@ -97,7 +93,7 @@ fn a_skill_out_of_a_run_starts_as_a_foot_comes_down_and_tracks_its_clip() {
 
 #[test]
 fn a_variant_that_rises_starts_out_of_a_crawl_and_on_the_way_down() {
-    let in_play = InPlayConfig { share: 1.0, maximum_speed_mps: None, out_of: OutOf::Low };
+    let in_play = InPlayConfig { out_of: OutOf::Low, ..Default::default() };
     let mut heights = Vec::new();
     start_each(EnvironmentConfig::default(), in_play, |env| heights.push(env.state.root_height()));
     assert!(heights.len() >= 12, "{heights:?}");
@@ -107,18 +103,22 @@ fn a_variant_that_rises_starts_out_of_a_crawl_and_on_the_way_down() {
 
 #[test]
 fn a_variant_that_catches_starts_in_the_middle_of_a_push_and_is_to_go_on() {
-    let mut config = EnvironmentConfig::default();
-    (config.command.speed_mps, config.command.stick_share, config.command.stop_share) = (1.5, 1.0, 0.0);
-    config.randomisation.push_newton = 600.0;
-    let in_play = InPlayConfig { share: 1.0, maximum_speed_mps: None, out_of: OutOf::Push };
-    let (mut starts, mut driven) = (0, 0);
-    start_each(config, in_play, |env| {
-        starts += 1;
-        let (velocity, way) =
-            (env.state.root().linear_velocity.truncate(), env.command.target - env.root_position());
-        // Straight on its velocity would be along its way.
-        driven += usize::from(velocity.perp_dot(way.normalize()).abs() > 0.3);
-        assert!(velocity.length() > 0.1 && way.length() > 1.0, "{velocity}, {way}");
-    });
-    assert!(starts >= 12 && driven >= 3, "{driven} of {starts} are driven aside");
+    for (out_of, heights) in [(OutOf::Push, 0.6..1.1), (OutOf::PushInCrouch, 0.3..0.85)] {
+        let mut config = EnvironmentConfig::default();
+        (config.command.speed_mps, config.command.stick_share, config.command.stop_share) = (1.5, 1.0, 0.0);
+        config.randomisation.push_newton = 600.0;
+        let in_play = InPlayConfig { out_of, ..Default::default() };
+        let (mut starts, mut driven) = (0, 0);
+        start_each(config, in_play, |env| {
+            starts += 1;
+            let (velocity, way) =
+                (env.state.root().linear_velocity.truncate(), env.command.target - env.root_position());
+            // Straight on its velocity would be along its way.
+            driven += usize::from(velocity.perp_dot(way.normalize()).abs() > 0.3);
+            assert!(velocity.length() > 0.1 && way.length() > 1.0, "{velocity}, {way}");
+            let height = env.state.root_height();
+            assert!(heights.contains(&height), "{out_of:?}: {height}");
+        });
+        assert!(starts >= 12 && driven >= 3, "{driven} of {starts} are driven aside");
+    }
 }

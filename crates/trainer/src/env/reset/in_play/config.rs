@@ -70,6 +70,9 @@ const STRIDES: [&str; 5] = ["walk", "walk", "jog", "jog", "run"];
 /// Nodes for [`OutOf::Push`].
 const PUSHED: [&str; 5] = ["walk", "jog", "run", "run", "run"];
 
+/// Nodes for [`OutOf::PushInCrouch`].
+const CROUCHED: [&str; 1] = ["crouch"];
+
 /// Nodes for [`OutOf::Run`].
 const RUNS: [&str; 3] = ["jog", "jog", "run"];
 
@@ -89,6 +92,33 @@ pub struct InPlayConfig {
     /// Out of what it starts.
     #[serde(default)]
     pub out_of: OutOf,
+    /// Where it starts out of a push: smallest force, as a share of `randomisation.push_newton`.
+    #[serde(default = "least_push")]
+    pub least_push: f32,
+    /// Where it starts out of a push: share of those from behind, within 0.4 rad. The others come from any side.
+    #[serde(default = "from_behind_share")]
+    pub from_behind_share: f32,
+}
+
+fn least_push() -> f32 {
+    0.3
+}
+
+/// They are the hardest to catch out of a run.
+fn from_behind_share() -> f32 {
+    0.5
+}
+
+impl Default for InPlayConfig {
+    fn default() -> Self {
+        Self {
+            share: 1.0,
+            maximum_speed_mps: None,
+            out_of: OutOf::Anything,
+            least_push: least_push(),
+            from_behind_share: from_behind_share(),
+        }
+    }
 }
 
 /// What a character does before it starts.
@@ -107,6 +137,8 @@ pub enum OutOf {
     /// It walks, jogs or runs, half of the time straight ahead, and is being pushed by up to `randomisation.push_newton`: for a variant that
     /// catches it. It is to go on.
     Push,
+    /// The same in a crouch.
+    PushInCrouch,
     /// It crawls, rests there, or is on its way down, for a variant that rises.
     Low,
 }
@@ -120,6 +152,7 @@ impl OutOf {
             Self::Stride => &STRIDES,
             Self::Run => &RUNS,
             Self::Push => &PUSHED,
+            Self::PushInCrouch => &CROUCHED,
             Self::Low => &LOW,
         }
     }
@@ -131,6 +164,11 @@ impl OutOf {
 
     /// Whether it starts in the middle of a stride.
     pub(super) fn strides(self) -> bool {
-        matches!(self, Self::Stride | Self::Run | Self::Push)
+        matches!(self, Self::Stride | Self::Run) || self.pushes()
+    }
+
+    /// Whether it starts in the middle of a push.
+    pub(crate) fn pushes(self) -> bool {
+        matches!(self, Self::Push | Self::PushInCrouch)
     }
 }
