@@ -1,5 +1,5 @@
-//! Catches: where a push drives a character that goes off its course, or beyond its speed, its gaits give all of their weight to their catching
-//! variant for a moment. So they do where it goes on out of a skill, until it has settled.
+//! Catches: where a push drives a character that goes off its course, beyond its speed, or a fast one far below it, its gaits give all of their
+//! weight to their catching variant for a moment. So they do where it goes on out of a skill, until it has settled.
 //!
 //! A gait that is pushed goes on putting one foot before the other. One policy that has learned to take over in the middle of a push steps
 //! wherever the body needs a foot, and goes on towards the target meanwhile.
@@ -12,7 +12,8 @@ use crate::skeleton::Skeleton;
 use crate::state::CharacterState;
 use crate::variants::Lasting;
 
-/// A velocity that is further off than this plus this share of the speed asked for is that of a push, metres per second: aside, or ahead.
+/// A velocity that is further off than this plus this share of the speed asked for is that of a push, metres per second: aside, ahead, or for a
+/// gait faster than the variant behind the variant's own speed.
 const PUSHED_MPS: f32 = 0.4;
 const PUSHED_SHARE: f32 = 0.12;
 
@@ -52,9 +53,10 @@ pub(crate) fn next_catch(
     let velocity = trunk_velocity(skeleton, state).truncate();
     let way = (target - state.root().position.truncate()).normalize_or_zero();
     // The variant goes at a speed of its own: no push has given the body that.
-    let pace = place.variant_mps(|node| node.catching).map_or(speed, |own| speed.max(own));
-    let most = PUSHED_MPS + PUSHED_SHARE * speed;
-    let is_off = velocity.perp_dot(way).abs() > most || velocity.dot(way) - pace > most;
+    let own = place.variant_mps(|node| node.catching).unwrap_or(speed);
+    let (along, most) = (velocity.dot(way), PUSHED_MPS + PUSHED_SHARE * speed);
+    let held_back = speed > own && own - along > most;
+    let is_off = velocity.perp_dot(way).abs() > most || along - speed.max(own) > most || held_back;
     let acts_already = catch.share > 0.0;
     let can_begin = urgency.at_pace >= 1.0 && unevenness < MOST_UNEVENNESS;
     catch.next(is_off && (can_begin || acts_already), SETTLES_SECS, CROSS_SECS, dt)

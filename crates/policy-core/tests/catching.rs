@@ -79,6 +79,25 @@ fn the_speed_of_the_variant_itself_is_no_push() {
 }
 
 #[test]
+fn a_gait_faster_than_the_variant_is_caught_where_a_push_holds_it_back() {
+    let mut manifest = common::gaits(|gait| gait.catching = Some(CATCHES.into()));
+    manifest.policies[common::policy(CATCHES)].speed_mps = Some(1.6);
+    let pack = Arc::new(CharacterPack::from_parts(manifest, common::tensors(0.0)).unwrap());
+    // A jog is 0.64 m/s slower than the variant at 0.96 m/s. A walk is never as fast as the variant.
+    for (coordinate, speed, slow, caught) in
+        [(2.0, 2.0, 1.0, 0.0), (2.0, 2.0, 0.9, 1.0), (1.0, 1.0, 0.3, 0.0)]
+    {
+        let config = ControllerConfig { start: n(1), give_way: None, ..ControllerConfig::default() };
+        let mut controller = Controller::with_config(pack.clone(), config);
+        let paces = (0..90).map(|_| share(&mut controller, coordinate, &moving(Vec3::X * speed))).last();
+        assert_eq!(paces, Some(0.0));
+        assert_eq!(share(&mut controller, coordinate, &moving(Vec3::X * slow)), caught, "{slow} of {speed}");
+        let again = (0..60).map(|_| share(&mut controller, coordinate, &moving(Vec3::X * 1.5))).last();
+        assert_eq!(again, Some(0.0), "it gathers speed by itself");
+    }
+}
+
+#[test]
 fn the_trunk_alone_or_the_hips_alone_count_by_half() {
     let skeleton = Skeleton::humanoid();
     for body in [skeleton.root(), skeleton.head().unwrap()] {

@@ -24,6 +24,7 @@ const PLAYED: &[&str] = &[
     "walk_turn",
     "walk_catch",
     "run_catch",
+    "crouch_catch",
     "idle_stop",
     "roll",
 ];
