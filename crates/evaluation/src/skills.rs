@@ -74,7 +74,7 @@ pub struct SkillReport {
     pub leaves_s: Option<f32>,
     /// Greatest horizontal distance of a hand ahead of the root, metres: how far it punches. `None` without bodies of such a name.
     pub hand_m: Option<f32>,
-    /// Greatest angle between the heading of the root and that at the press, degrees: how far a jump twists.
+    /// Greatest angle between the heading of the root and that at the start of the skill, degrees: how far a jump twists.
     pub turned_degrees: Option<f32>,
 }
 

@@ -12,8 +12,8 @@ use crate::skeleton::Skeleton;
 use crate::state::CharacterState;
 use crate::variants::Lasting;
 
-/// A velocity that is further off than this plus this share of the speed asked for is that of a push, metres per second: aside, ahead, or for a
-/// gait faster than the variant behind the variant's own speed.
+/// A velocity that is further off than this plus this share of the speed asked for is that of a push, metres per second: aside, or ahead. A gait that
+/// is asked to be faster than the variant is pushed back where it is so much slower than the variant.
 const PUSHED_MPS: f32 = 0.4;
 const PUSHED_SHARE: f32 = 0.12;
 

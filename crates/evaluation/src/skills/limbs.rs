@@ -19,7 +19,7 @@ pub(super) struct Limbs {
     pub(super) longest: Option<[f32; 2]>,
     /// Greatest horizontal distance of a hand ahead of the root, metres.
     pub(super) hand: Option<f32>,
-    /// Where the root headed first.
+    /// Where the root headed as the skill began.
     heading: Option<Vec2>,
     /// Greatest angle off that, radians.
     pub(super) turned: f32,
@@ -92,6 +92,7 @@ mod tests {
         let without_feet = Limbs::default().after(0.1, std::iter::empty());
         assert_eq!(without_feet, Limbs::default(), "a character without feet");
     }
+
     #[test]
     fn a_twist_counts_where_it_is_greatest() {
         let mut state = CharacterState::new(&Skeleton::humanoid());

@@ -47,11 +47,17 @@ fn a_standing_start_is_upright_and_moves_ahead() {
     assert!(speeds.iter().any(|speed| *speed < 0.3 * WALKING_START_MPS), "{speeds:?}");
 }
 
+/// Settings of a skill that sees a clock of 1.5 s.
+fn timed() -> EnvironmentConfig {
+    let mut config = EnvironmentConfig::default();
+    (config.command.clock_seconds, config.reward.tracking_weight) = (1.5, 0.9);
+    config
+}
+
 #[test]
 fn a_timed_skill_is_to_go_straight_ahead() {
     let (model, normalisers, clips) = humanoid_with(still(46));
-    let mut config = EnvironmentConfig::default();
-    (config.command.clock_seconds, config.reward.tracking_weight) = (1.5, 0.9);
+    let mut config = timed();
     (config.command.stick_share, config.command.stop_share) = (1.0, 0.0);
     config.reset.standing_share = 0.3;
     let setting = Setting::alone("kick", (model, normalisers), config);
@@ -69,8 +75,7 @@ fn a_timed_skill_is_to_go_straight_ahead() {
 #[test]
 fn a_timed_skill_sees_the_second_of_its_clip_in_every_start() {
     let (model, normalisers, clips) = humanoid_with(still(46));
-    let mut config = EnvironmentConfig::default();
-    (config.command.clock_seconds, config.reward.tracking_weight) = (1.5, 0.9);
+    let mut config = timed();
     (config.reset.standing_share, config.reset.other_clips_share) = (0.3, 0.3);
     let setting = Setting::alone("kick", (model, normalisers), config);
     let demonstrations = [&clips];
