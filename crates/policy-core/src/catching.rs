@@ -58,6 +58,8 @@ pub(crate) fn next_catch(
     let held_back = speed > own && own - along > most;
     let is_off = velocity.perp_dot(way).abs() > most || along - speed.max(own) > most || held_back;
     let acts_already = catch.share > 0.0;
-    let can_begin = urgency.at_pace >= 1.0 && unevenness < MOST_UNEVENNESS;
+    // A gait without a turning variant turns by itself, and its body leans then too.
+    let goes_on = urgency.at_pace >= 1.0 && !urgency.turn.has_changed(way);
+    let can_begin = goes_on && unevenness < MOST_UNEVENNESS;
     catch.next(is_off && (can_begin || acts_already), SETTLES_SECS, CROSS_SECS, dt)
 }

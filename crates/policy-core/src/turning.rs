@@ -108,7 +108,7 @@ impl Turn {
     }
 
     /// Whether the way to the target is another one than when it last faced it.
-    fn has_changed(self, way: Vec2) -> bool {
+    pub(crate) fn has_changed(self, way: Vec2) -> bool {
         libm::fabsf(self.way.angle_to(way)) > CHANGED_RADIANS
     }
 }

@@ -98,6 +98,19 @@ fn a_gait_faster_than_the_variant_is_caught_where_a_push_holds_it_back() {
 }
 
 #[test]
+fn a_gait_without_a_turning_variant_is_not_caught_while_it_turns() {
+    let aside = moving(Vec3::new(1.0, 1.0, 0.0));
+    let asks = |controller: &mut Controller, target: Vec2| {
+        let goal = Goal::Path { path: PathId::new(0), coordinate: 1.0 };
+        controller.tick(&aside, &Command { goal, target: Some(target), ..Command::default() }, DT);
+        weight_of(controller, CATCHES)
+    };
+    let mut goes_back = goes(1.0, 1.0, true);
+    assert_eq!(asks(&mut goes_back, Vec2::X * -10.0), 0.0, "it is to turn about, and leans");
+    assert_eq!(asks(&mut goes(1.0, 1.0, true), Vec2::X * 10.0), 1.0, "it goes on, and was pushed");
+}
+
+#[test]
 fn the_trunk_alone_or_the_hips_alone_count_by_half() {
     let skeleton = Skeleton::humanoid();
     for body in [skeleton.root(), skeleton.head().unwrap()] {
