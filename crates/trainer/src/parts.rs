@@ -41,7 +41,7 @@ impl Workspace {
             self.joint_parts(recipe, seed)
         }?;
         if recipe.phases.iter().any(|phase| phase.ppo.symmetry > 0.0) {
-            let timed = recipe.phases.iter().any(|phase| phase.environment.command.clock_seconds > 0.0);
+            let timed = recipe.first().environment.command.clock_seconds > 0.0;
             let mirror = mirror_of(self.model.skeleton(), &self.normalisers.observation, timed);
             parts.learner.mirror =
                 Some(mirror.with_context(|| format!("{}: ppo.symmetry needs a mirror image", recipe.skill))?);

@@ -138,6 +138,13 @@ impl Recipe {
                 format!("{between:?}"),
             ),
             (
+                ppo.symmetry == 0.0
+                    || (command.clock_seconds > 0.0) == (first.environment.command.clock_seconds > 0.0),
+                "ppo.symmetry",
+                "0 where this phase has a clock and the first one has none, or the other way round: a clock looks the same in the mirror, a target does not",
+                ppo.symmetry.to_string(),
+            ),
+            (
                 ppo.min_learning_rate <= ppo.max_learning_rate,
                 "ppo.min_learning_rate and max_learning_rate",
                 "the least value before the largest",
