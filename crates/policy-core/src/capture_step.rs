@@ -15,8 +15,12 @@ use crate::state::CharacterState;
 use crate::strafe::strafing_share;
 use crate::variants::Lasting;
 
-/// A body that would come to rest so far behind its ankles tips over, as a share of its height above them.
-const BEHIND: f32 = 0.1;
+/// A body that would come to rest so far behind its ankles tips over, as a share of its height above them: a little sooner than it loses its balance,
+/// for the first step takes a while.
+const BEHIND: f32 = 0.03;
+
+/// It tips over backwards rather than aside where that place is at most so many times as far aside as it is behind.
+const MOST_ASIDE: f32 = 1.3;
 
 /// Largest angle between heading and target, radians. In a turn a body leans into it.
 const MOST_RADIANS: f32 = 0.6;
@@ -62,7 +66,8 @@ impl CaptureStep {
         let is_ahead = target
             .and_then(|target| (target - root.position.truncate()).try_normalize())
             .is_none_or(|direction| heading.angle_off(direction) < MOST_RADIANS);
-        let tips = comes_to_rest.filter(|at| is_ahead && at.x < -BEHIND);
+        let is_behind = |at: &Vec2| at.x < -BEHIND && libm::fabsf(at.y) < -MOST_ASIDE * at.x;
+        let tips = comes_to_rest.filter(|at| is_ahead && is_behind(at));
         let way = tips.and_then(|at| heading.world_from_heading_2d(at).try_normalize());
         let acts = self.acts.next(way.is_some(), SETTLES_SECS, CROSS_SECS, dt);
         match acts.share > 0.0 {

@@ -101,6 +101,13 @@ fn a_stand_steps_back_too_and_a_low_gait_does_not() {
 }
 
 #[test]
+fn the_steps_begin_once_the_body_would_come_to_rest_behind_its_heels() {
+    let share = |speed: f32| tick(&mut controller_at("walk", true), &moving(0.0, speed), Some(0.0));
+    assert_eq!(share(-0.05), 0.0, "0.015 of its height behind its ankles");
+    assert_eq!(share(-0.2), DT / 0.07, "0.06 of it");
+}
+
+#[test]
 fn nothing_changes_ahead_aside_in_turns_and_where_it_is_switched_off() {
     let share =
         |controller: &mut Controller, state: &CharacterState, towards| tick(controller, state, towards);
@@ -108,6 +115,8 @@ fn nothing_changes_ahead_aside_in_turns_and_where_it_is_switched_off() {
     let mut aside = moving(0.0, 0.0);
     aside.bodies.iter_mut().for_each(|body| body.linear_velocity.y = 1.5);
     assert_eq!(share(&mut on, &aside, Some(0.0)), 0.0);
+    aside.bodies.iter_mut().for_each(|body| body.linear_velocity.x = -0.8);
+    assert_eq!(share(&mut on, &aside, Some(0.0)), 0.0, "more aside than back");
     assert_eq!(share(&mut on, &moving(0.0, 2.5), Some(0.0)), 0.0);
     assert_eq!(share(&mut on, &moving(0.0, -0.8), Some(1.2)), 0.0, "it turns away");
     assert_eq!(share(&mut on, &moving(0.0, -0.8), Some(0.4)), DT / 0.07, "a target nearly ahead is none");
