@@ -15,7 +15,7 @@ use crate::state::CharacterState;
 use crate::variants::switched;
 
 /// Angle off the heading at which a target begins a turn, radians.
-const BEGINS_RADIANS: f32 = 0.7;
+const BEGINS_RADIANS: f32 = 0.55;
 
 /// The way to the target has changed by at least this then, radians. Where it has not, a push has turned the body, and that is for others to
 /// catch.

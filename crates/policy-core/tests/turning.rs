@@ -71,8 +71,8 @@ fn it_takes_all_in_the_tick_in_which_the_target_lies_far_aside_until_the_charact
 
 #[test]
 fn slow_characters_small_angles_and_low_gaits_have_none() {
-    assert_eq!(share(&mut goes(0, 1.0, 1.0), AHEAD, 0, 1.0, Some(35.0)), 0.0, "the target is nearly ahead");
-    assert_eq!(share(&mut goes(0, 1.0, 1.0), AHEAD, 0, 1.0, Some(45.0)), 1.0);
+    assert_eq!(share(&mut goes(0, 1.0, 1.0), AHEAD, 0, 1.0, Some(30.0)), 0.0, "the target is nearly ahead");
+    assert_eq!(share(&mut goes(0, 1.0, 1.0), AHEAD, 0, 1.0, Some(35.0)), 1.0);
     let mut pushed = goes(0, 1.0, 1.0);
     for faces in [0.0, 30.0, 60.0, 90.0] {
         let turned = Moves { faces, goes: 90.0, speed: 1.0 };
