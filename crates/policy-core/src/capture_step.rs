@@ -19,7 +19,8 @@ use crate::variants::Lasting;
 /// for the first step takes a while.
 const BEHIND: f32 = 0.03;
 
-/// It tips over backwards rather than aside where that place is at most so many times as far aside as it is behind.
+/// One without a target tips over backwards where that place is at most so many times as far aside as it is behind. What tips it aside is for the
+/// agile variant of its stand.
 const MOST_ASIDE: f32 = 1.3;
 
 /// Largest angle between heading and target, radians. In a turn a body leans into it.
@@ -66,7 +67,8 @@ impl CaptureStep {
         let is_ahead = target
             .and_then(|target| (target - root.position.truncate()).try_normalize())
             .is_none_or(|direction| heading.angle_off(direction) < MOST_RADIANS);
-        let is_behind = |at: &Vec2| at.x < -BEHIND && libm::fabsf(at.y) < -MOST_ASIDE * at.x;
+        let is_behind =
+            |at: &Vec2| at.x < -BEHIND && (target.is_some() || libm::fabsf(at.y) < -MOST_ASIDE * at.x);
         let tips = comes_to_rest.filter(|at| is_ahead && is_behind(at));
         let way = tips.and_then(|at| heading.world_from_heading_2d(at).try_normalize());
         let acts = self.acts.next(way.is_some(), SETTLES_SECS, CROSS_SECS, dt);

@@ -116,7 +116,8 @@ fn nothing_changes_ahead_aside_in_turns_and_where_it_is_switched_off() {
     aside.bodies.iter_mut().for_each(|body| body.linear_velocity.y = 1.5);
     assert_eq!(share(&mut on, &aside, Some(0.0)), 0.0);
     aside.bodies.iter_mut().for_each(|body| body.linear_velocity.x = -0.8);
-    assert_eq!(share(&mut on, &aside, Some(0.0)), 0.0, "more aside than back");
+    assert_eq!(share(&mut controller_at("idle", true), &aside, None), 0.0, "it stands, and tips aside");
+    assert_eq!(share(&mut controller_at("walk", true), &aside, Some(0.0)), DT / 0.07, "it goes");
     assert_eq!(share(&mut on, &moving(0.0, 2.5), Some(0.0)), 0.0);
     assert_eq!(share(&mut on, &moving(0.0, -0.8), Some(1.2)), 0.0, "it turns away");
     assert_eq!(share(&mut on, &moving(0.0, -0.8), Some(0.4)), DT / 0.07, "a target nearly ahead is none");
