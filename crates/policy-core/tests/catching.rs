@@ -38,8 +38,13 @@ fn goes(coordinate: f32, speed: f32, capture_steps: bool) -> Controller {
 
 /// One tick on *speed* with a target ahead. Returns the share of the catching variant.
 fn share(controller: &mut Controller, coordinate: f32, state: &CharacterState) -> f32 {
+    share_towards(controller, coordinate, state, Vec2::X * 10.0)
+}
+
+/// The same with a target anywhere.
+fn share_towards(controller: &mut Controller, coordinate: f32, state: &CharacterState, target: Vec2) -> f32 {
     let goal = Goal::Path { path: PathId::new(0), coordinate };
-    controller.tick(state, &Command { goal, target: Some(Vec2::X * 10.0), ..Command::default() }, DT);
+    controller.tick(state, &Command { goal, target: Some(target), ..Command::default() }, DT);
     weight_of(controller, CATCHES)
 }
 
@@ -100,14 +105,9 @@ fn a_gait_faster_than_the_variant_is_caught_where_a_push_holds_it_back() {
 #[test]
 fn a_gait_without_a_turning_variant_is_not_caught_while_it_turns() {
     let aside = moving(Vec3::new(1.0, 1.0, 0.0));
-    let asks = |controller: &mut Controller, target: Vec2| {
-        let goal = Goal::Path { path: PathId::new(0), coordinate: 1.0 };
-        controller.tick(&aside, &Command { goal, target: Some(target), ..Command::default() }, DT);
-        weight_of(controller, CATCHES)
-    };
-    let mut goes_back = goes(1.0, 1.0, true);
-    assert_eq!(asks(&mut goes_back, Vec2::X * -10.0), 0.0, "it is to turn about, and leans");
-    assert_eq!(asks(&mut goes(1.0, 1.0, true), Vec2::X * 10.0), 1.0, "it goes on, and was pushed");
+    let about = share_towards(&mut goes(1.0, 1.0, true), 1.0, &aside, Vec2::X * -10.0);
+    assert_eq!(about, 0.0, "it is to turn about, and leans");
+    assert_eq!(share(&mut goes(1.0, 1.0, true), 1.0, &aside), 1.0, "it goes on, and was pushed");
 }
 
 #[test]
