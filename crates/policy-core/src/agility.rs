@@ -17,7 +17,7 @@ use crate::ids::NodeId;
 use crate::path::GraphPosition;
 use crate::starts_and_stops::{next_start, next_stop};
 use crate::state::CharacterState;
-use crate::turning::Turn;
+use crate::turning::{Turn, goes_about_on_the_spot};
 use crate::variants::{Lasting, Variant, crossed, within};
 
 /// Velocity errors between which the variant comes in, relative to the speed of the gait.
@@ -136,7 +136,7 @@ impl Urgency {
     ///
     /// A speed beyond the one asked for is no error at first: the way back to a slower gait brakes. Of a character that has gone at its pace
     /// it is a push from behind. Gaits without a speed ask for nothing, and on an edge that is only crossed the body stands up, or goes
-    /// down, before it goes anywhere.
+    /// down, before it goes anywhere. Of one that turns on the spot the velocity sways: it goes as it is asked to wherever it does not turn.
     pub(crate) fn next(
         self,
         place: OnGraph<'_>,
@@ -150,6 +150,9 @@ impl Urgency {
         let stands = node.is_some_and(|node| graph.node(node).stands());
         let off_level = within(steepest(state), OFF_LEVEL);
         let steady = |can_be: bool, off: f32| if arrived && can_be { 1.0 - off.max(off_level) } else { 0.0 };
+        let on_the_spot = goes_about_on_the_spot(place);
+        let start = next_start(self.start, self.at_rest, place, state, target, dt);
+        let turn = self.turn.next(start.share > 0.0, place, state, target, dt);
         let now = match (target, moving_mps(graph, position)) {
             _ if place.crosses() => Self::default(),
             (None, _) => {
@@ -167,7 +170,10 @@ impl Urgency {
                 let off = if self.at_pace < 1.0 { at_first } else { at_pace };
                 Self {
                     to_move: off,
-                    as_asked: steady(!mostly_stands(graph, position), off),
+                    as_asked: steady(
+                        !mostly_stands(graph, position),
+                        if on_the_spot { turn.share } else { off },
+                    ),
                     at_pace: match arrived {
                         false => 0.0,
                         true if at_pace > 0.0 => self.at_pace,
@@ -178,8 +184,6 @@ impl Urgency {
             }
             (Some(_), None) => Self::default(),
         };
-        let start = next_start(self.start, self.at_rest, place, state, target, dt);
-        let turn = self.turn.next(start.share > 0.0, place, state, target, dt);
         let follow = |before: f32, now: f32, secs: [f32; 2]| {
             crossed(before, if now.is_finite() { now } else { 0.0 }, secs, dt)
         };

@@ -40,6 +40,11 @@ const DIRECTION_MPS: f32 = 0.2;
 /// Time from a gait to its turning variant, and back, seconds. The first is no longer than a tick.
 const CROSS_SECS: [f32; 2] = [0.03, 0.4];
 
+/// Whether the gaits that act here turn on the spot.
+pub(crate) fn goes_about_on_the_spot(place: OnGraph<'_>) -> bool {
+    place.all_slower_than(GOES_MPS)
+}
+
 /// What a turn remembers from tick to tick.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct Turn {
@@ -68,7 +73,7 @@ impl Turn {
         let heading = Heading::from_rotation(state.root().rotation);
         let way = target.and_then(|target| (target - state.root().position.truncate()).try_normalize());
         let towards = way.map(|way| (way, heading.angle_off(way)));
-        let on_the_spot = place.all_slower_than(GOES_MPS);
+        let on_the_spot = goes_about_on_the_spot(place);
         let turns = towards.is_some_and(|(way, off)| {
             can_turn
                 && match on_the_spot {

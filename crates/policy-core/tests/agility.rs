@@ -205,6 +205,35 @@ fn a_gait_that_goes_as_asked_for_a_while_is_left_to_its_steady_variant_until_it_
 }
 
 #[test]
+fn a_gait_that_turns_on_the_spot_is_left_to_its_steady_variant_however_it_sways_until_it_turns() {
+    let roll = policy("roll");
+    let last_share = |mps: f32| {
+        let mut controller = Controller::new(changed_pack(false, |manifest| {
+            manifest.policies[1].speed_mps = Some(mps);
+            manifest.policies[1].agile = None;
+            manifest.policies[1].steady = Some("roll".into());
+            manifest.policies[1].turning = Some("idle".into());
+        }));
+        // Faces aside and moves backwards by turns, a second each.
+        let mut sways = |ticks: usize, direction: Vec2| {
+            let states = [0.3, -0.6].map(|angle: f32| {
+                let mut state = walking(mps * angle.signum());
+                state.body_mut(BodyId::new(0)).rotation = Quat::from_rotation_z(angle);
+                state
+            });
+            let share = |index: usize| {
+                let acted = tick_towards(&mut controller, &states[index / 30 % 2], direction);
+                weight(&acted, roll)
+            };
+            (0..ticks).map(share).last()
+        };
+        [sways(120, Vec2::X), sways(4, Vec2::Y)].map(Option::unwrap_or_default)
+    };
+    assert_eq!(last_share(0.3), [1.0, 0.0], "until the target lies aside");
+    assert_eq!(last_share(1.0), [0.0, 0.0], "one that is faster is not as it was asked to be");
+}
+
+#[test]
 fn a_place_between_two_gaits_becomes_steady_from_either_side_unless_it_mostly_stands() {
     let roll = policy("roll");
     let places = [(0.6, 0.6), (0.5, 0.5), (0.4, 0.0)];

@@ -119,11 +119,13 @@ pub fn measure_turns(rig: &Rig<'_>, settled: &[Settled]) -> BTreeMap<String, Tur
     TURNS_DEGREES.iter().map(|degrees| (format!("turn_{degrees}"), report(*degrees))).collect()
 }
 
+/// A turn by an angle from where the character goes, or faces where it stands, radians.
 fn turn(rig: &Rig<'_>, from: &Settled, angle: f32) -> Turn {
     let mut trial = from.resume(rig.model);
-    let [mut velocity, mut heading] = [TurnDetector::new(angle); 2];
-    let start = trial.position().x;
-    trial.steer(angle, from.gait.push);
+    let ahead = trial.ahead();
+    let [mut velocity, mut heading] = [TurnDetector::new(ahead + angle); 2];
+    let start = trial.position();
+    trial.steer(ahead + angle, from.gait.push);
     let mut turn = Turn::default();
     for _ in 0..ticks(LIMIT_SECS + HOLD_SECS) {
         if !trial.tick() || trial.is_down() {
@@ -132,7 +134,7 @@ fn turn(rig: &Rig<'_>, from: &Settled, angle: f32) -> Turn {
         }
         turn.facing_secs = turn.facing_secs.or_else(|| heading.tick(Vec2::from_angle(trial.heading())));
         if turn.secs.is_none() {
-            turn.metres = turn.metres.max(trial.position().x - start);
+            turn.metres = turn.metres.max((trial.position() - start).dot(Vec2::from_angle(ahead)));
             turn.secs = velocity.tick(trial.velocity.value());
         }
         if turn.secs.is_some() && turn.facing_secs.is_some() {

@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use glam::Vec3;
+use glam::{Quat, Vec3};
 use physics::PhysicsCharacter;
 use policy_core::BodyId;
 use serde::{Deserialize, Serialize};
@@ -21,7 +21,7 @@ const MOST_NEWTON: f32 = 1000.0;
 /// Of so many characters all but one have to survive.
 const OF_WHICH_ONE_MAY_FALL: usize = 16;
 
-/// Largest pushes, newton, by the side that they push to; the character goes forward.
+/// Largest pushes, newton, by the side that they push to; the character goes forward, or faces there where it stands.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(default)]
 pub struct SidesReport {
@@ -69,8 +69,10 @@ pub(crate) fn nominal_trials(step_newton: f32, shoved: usize) -> f32 {
     2.0 * 4.0 * tries * shoved as f32
 }
 
+/// Whether it survives a push; x of the force is ahead.
 fn survives(rig: &Rig<'_>, from: &Settled, body: BodyId, force: Vec3) -> bool {
     let mut trial = from.resume(rig.model);
+    let force = Quat::from_rotation_z(trial.ahead()) * force;
     trial.character.push(body, force, PUSH_SECS).expect("forces tried are within bounds");
     (0..ticks(SURVIVED_SECS)).all(|_| trial.tick() && !trial.is_down())
 }

@@ -156,6 +156,13 @@ impl Trial {
         Heading::from_rotation(self.state.root().rotation).angle()
     }
 
+    /// Which way is ahead, radians from x: where a stick that is pushed points while the gait settles, or where a character faces that stands. It may
+    /// have turned as it came to its stand.
+    #[must_use]
+    pub fn ahead(&self) -> f32 {
+        if self.pad.left_stick == [0.0; 2] { self.heading() } else { 0.0 }
+    }
+
     /// True when pelvis and head are as high as in standing.
     #[must_use]
     pub fn is_upright(&self) -> bool {
