@@ -14,7 +14,7 @@ use policy_core::{CharacterPack, ControllerConfig, Mlp, Skeleton};
 use random::Rng;
 
 use super::stress::{Cases, Grounds};
-use super::trial::Gaits;
+use super::trial::{Gait, Gaits, Trial};
 use super::{Effort, EvalCharacter, Evaluation, PlayerReport, Progress, Section, evaluate, table};
 
 const HUMANOID: &str = include_str!("../../../assets/humanoid.xml");
@@ -227,6 +227,20 @@ fn a_character_that_falls_on_the_way_to_a_gait_is_left_out_and_falls_are_counted
     assert_eq!(report.terrain_get_up["steps_10cm"].success, 0.0);
     assert_eq!(report.push_torso["walk"].left_newton, 0.0);
     assert!(report.foot_slide_mps.is_empty());
+}
+
+#[test]
+fn ahead_is_where_a_stand_faces_and_where_a_walk_is_sent() {
+    let pack = pack(false);
+    let bridge = physics_bridge::Model::from_mjcf(HUMANOID).unwrap();
+    let model = Model::new(&bridge, Engine::Mujoco).unwrap();
+    let ahead = |name: &str| {
+        let gait = Gait::named(&pack, name).unwrap();
+        let mut trial = Trial::new(&model, &pack, ControllerConfig::default(), &gait);
+        trial.place(Vec2::ZERO, 0.5);
+        trial.ahead()
+    };
+    assert!((ahead("idle") - 0.5).abs() < 1e-3 && ahead("walk") == 0.0, "{}", ahead("idle"));
 }
 
 #[test]
