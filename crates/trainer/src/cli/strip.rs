@@ -81,7 +81,9 @@ fn episodic_skills(
     a: &Arguments,
 ) -> Result<()> {
     for (index, skill) in pack.skills().iter().enumerate() {
-        let recipe = Recipe::load(&recipes.join(format!("{}.toml", skill.name)))?;
+        // Two skills may share a policy, which has one recipe.
+        let policy = &pack.manifest().policies[skill.policy.index()].name;
+        let recipe = Recipe::load(&recipes.join(format!("{policy}.toml")))?;
         let raises = pack.recovery() == Some(SkillId::new(index));
         // One that raises the character has a clip for each side it may lie on.
         for (which, clip) in recipe.clips.iter().take(if raises { 2 } else { 1 }).enumerate() {
