@@ -17,7 +17,7 @@ use crate::ids::NodeId;
 use crate::path::GraphPosition;
 use crate::starts_and_stops::{next_start, next_stop};
 use crate::state::CharacterState;
-use crate::turning::{Turn, goes_about_on_the_spot};
+use crate::turning::{GOES_MPS, Turn};
 use crate::variants::{Lasting, Variant, crossed, within};
 
 /// Velocity errors between which the variant comes in, relative to the speed of the gait.
@@ -68,10 +68,10 @@ impl OnGraph<'_> {
         self.acting().iter().all(|node| variant(self.graph.node(*node)).is_some())
     }
 
-    /// Whether all gaits that act here move, and more slowly than this, metres per second.
-    pub(crate) fn all_slower_than(&self, mps: f32) -> bool {
+    /// Whether all gaits that act here move, and so slowly that they turn on the spot.
+    pub(crate) fn all_turn_on_the_spot(&self) -> bool {
         let speed = |node| self.graph.node(node).speed_mps.unwrap_or(0.0);
-        self.acting().iter().all(|node| speed(*node) > 0.0 && speed(*node) < mps)
+        self.acting().iter().all(|node| speed(*node) > 0.0 && speed(*node) < GOES_MPS)
     }
 
     /// The gaits that act: one twice where it acts alone.
@@ -150,7 +150,7 @@ impl Urgency {
         let stands = node.is_some_and(|node| graph.node(node).stands());
         let off_level = within(steepest(state), OFF_LEVEL);
         let steady = |can_be: bool, off: f32| if arrived && can_be { 1.0 - off.max(off_level) } else { 0.0 };
-        let on_the_spot = goes_about_on_the_spot(place);
+        let on_the_spot = place.all_turn_on_the_spot();
         let start = next_start(self.start, self.at_rest, place, state, target, dt);
         let turn = self.turn.next(start.share > 0.0, place, state, target, dt);
         let now = match (target, moving_mps(graph, position)) {

@@ -32,18 +32,13 @@ const GOES_RADIANS: f32 = 0.2;
 const FACES_ON_THE_SPOT_RADIANS: f32 = 0.2;
 
 /// A character that is slower than this does not go; it sets off, metres per second. A gait that is slower turns on the spot.
-const GOES_MPS: f32 = 0.4;
+pub(crate) const GOES_MPS: f32 = 0.4;
 
 /// Below this speed a velocity has no direction, metres per second.
 const DIRECTION_MPS: f32 = 0.2;
 
 /// Time from a gait to its turning variant, and back, seconds. The first is no longer than a tick.
 const CROSS_SECS: [f32; 2] = [0.03, 0.4];
-
-/// Whether the gaits that act here turn on the spot.
-pub(crate) fn goes_about_on_the_spot(place: OnGraph<'_>) -> bool {
-    place.all_slower_than(GOES_MPS)
-}
 
 /// What a turn remembers from tick to tick.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -73,7 +68,7 @@ impl Turn {
         let heading = Heading::from_rotation(state.root().rotation);
         let way = target.and_then(|target| (target - state.root().position.truncate()).try_normalize());
         let towards = way.map(|way| (way, heading.angle_off(way)));
-        let on_the_spot = goes_about_on_the_spot(place);
+        let on_the_spot = place.all_turn_on_the_spot();
         let turns = towards.is_some_and(|(way, off)| {
             can_turn
                 && match on_the_spot {

@@ -221,13 +221,12 @@ fn a_gait_that_turns_on_the_spot_is_left_to_its_steady_variant_however_it_sways_
                 state.body_mut(BodyId::new(0)).rotation = Quat::from_rotation_z(angle);
                 state
             });
-            let share = |index: usize| {
+            (0..ticks).fold(f32::NAN, |_, index| {
                 let acted = tick_towards(&mut controller, &states[index / 30 % 2], direction);
                 weight(&acted, roll)
-            };
-            (0..ticks).map(share).last()
+            })
         };
-        [sways(120, Vec2::X), sways(4, Vec2::Y)].map(Option::unwrap_or_default)
+        [sways(120, Vec2::X), sways(4, Vec2::Y)]
     };
     assert_eq!(last_share(0.3), [1.0, 0.0], "until the target lies aside");
     assert_eq!(last_share(1.0), [0.0, 0.0], "one that is faster is not as it was asked to be");

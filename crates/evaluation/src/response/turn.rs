@@ -119,7 +119,7 @@ pub fn measure_turns(rig: &Rig<'_>, settled: &[Settled]) -> BTreeMap<String, Tur
     TURNS_DEGREES.iter().map(|degrees| (format!("turn_{degrees}"), report(*degrees))).collect()
 }
 
-/// A turn by an angle from where the character goes, or faces where it stands, radians.
+/// A turn by an angle, radians, from where the character goes, or from where it faces if it stands.
 fn turn(rig: &Rig<'_>, from: &Settled, angle: f32) -> Turn {
     let mut trial = from.resume(rig.model);
     let ahead = trial.ahead();

@@ -21,7 +21,7 @@ const MOST_NEWTON: f32 = 1000.0;
 /// Of so many characters all but one have to survive.
 const OF_WHICH_ONE_MAY_FALL: usize = 16;
 
-/// Largest pushes, newton, by the side that they push to; the character goes forward, or faces there where it stands.
+/// Largest pushes, newton, by the side that they push to. Forward is where the character goes, or where it faces if it stands.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(default)]
 pub struct SidesReport {

@@ -156,8 +156,8 @@ impl Trial {
         Heading::from_rotation(self.state.root().rotation).angle()
     }
 
-    /// Which way is ahead, radians from x: where a stick that is pushed points while the gait settles, or where a character faces that stands. It may
-    /// have turned as it came to its stand.
+    /// Which way is ahead while a gait settles, radians from x: along x, where its stick points, or with the stick at rest where the character
+    /// faces. It may have turned as it came to its stand.
     #[must_use]
     pub fn ahead(&self) -> f32 {
         if self.pad.left_stick == [0.0; 2] { self.heading() } else { 0.0 }
