@@ -87,6 +87,12 @@ pub enum ClipError {
         /// Its seconds.
         found: f32,
     },
+    /// Only a cycle can be made symmetric.
+    #[error("clip {clip}: expected one that loops, to be made symmetric, found one that ends")]
+    NotLooping {
+        /// Name of the clip.
+        clip: String,
+    },
     /// An excerpt that is not within the clip.
     #[error(
         "clip {clip}: expected an excerpt [from, to] with 0 <= from < to <= {duration} s, found [{}, {}]",

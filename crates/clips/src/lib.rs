@@ -18,6 +18,7 @@ mod pickle;
 mod pickle_machine;
 mod punch;
 mod side_steps;
+mod symmetric;
 
 pub use error::ClipError;
 pub use fitted::{FitError, Fitted, fit};

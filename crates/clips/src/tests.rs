@@ -128,6 +128,39 @@ fn the_mirror_of_the_mirror_is_the_clip() {
 }
 
 #[test]
+fn a_symmetric_clip_is_its_own_mirror_image_half_a_cycle_later() {
+    let mut limping = swinging();
+    let turn = Quat::from_rotation_z(0.4);
+    for (i, frame) in limping.local_rotations.iter_mut().enumerate() {
+        let phase = (i as f32 / 120.0) * std::f32::consts::TAU;
+        frame[0] = turn * Quat::from_rotation_z(0.3 * phase.sin() + 0.2 * phase.cos().powi(2));
+        frame[body("left_shin")] *= Quat::from_rotation_y(0.3);
+    }
+    limping.root_positions.iter_mut().for_each(|p| *p = turn * *p);
+    let even = limping.symmetric().unwrap();
+    let (mirrored, half) = (even.mirrored(), 0.5 * even.duration());
+    let apart = |one: &Clip, other: &Clip, time: f32| {
+        let ((p, a), (q, b)) = (one.sample(time), other.sample(time + half));
+        let furthest = a.iter().zip(&b).map(|(a, b)| a.angle_between(*b)).fold(0.0, f32::max);
+        (furthest, (p.y - q.y).abs())
+    };
+    for time in [0.0, 0.1, 0.27, 0.45] {
+        let (angle, aside) = apart(&even, &mirrored, time);
+        assert!(angle < 0.01 && aside < 1e-4, "{time}: {angle} rad, {aside} m");
+        assert!(apart(&limping, &limping.mirrored(), time).0 > 0.1);
+    }
+    // The limp goes and the gait stays: the knees bend, the way is as long, and leads ahead.
+    let offset = even.cycle_offset();
+    assert!((offset.x - 1.0).abs() < 1e-3 && offset.y.abs() < 1e-3, "{offset}");
+    let bend = |clip: &Clip, frame: usize| {
+        clip.local_rotations[frame][body("left_shin")].angle_between(Quat::IDENTITY)
+    };
+    assert!((bend(&even, 60) - bend(&even, 0)).abs() > 0.1);
+    let error = swinging().held(1.0).unwrap().symmetric().unwrap_err().to_string();
+    assert!(error.contains("expected one that loops"), "{error}");
+}
+
+#[test]
 fn a_cycle_is_closed_and_its_velocities_are_those_of_the_motion() {
     let motion = Motion::fit(&swinging(), &Skeleton::humanoid()).unwrap();
     assert_eq!(motion.poses.len(), 120);

@@ -8,12 +8,12 @@ use random::Rng;
 
 use super::{Gait, LowPass, Trial, ticks};
 
-/// Longest way through the graph to a gait, seconds.
-const REACH_SECS: f32 = 15.0;
+/// Longest way through the graph to a gait and the time in it, seconds.
+const REACH_SECS: f32 = 20.0;
 
-/// Seconds in the gait before a trial begins, and the range of a random time more, which gives the phase: a whole cycle of a crawl, the longest. From a
-/// part of it turns to one side would seem slower.
-const SETTLE_SECS: [f32; 2] = [2.0, 2.6];
+/// Seconds in the gait before a trial begins, and the range of a random time more, which gives the phase: several cycles of a crawl, the longest. Over
+/// one and a half cycles some phases come twice as often as others, and turns to one side seem slower.
+const SETTLE_SECS: [f32; 2] = [2.0, 8.0];
 
 /// Largest angle from x at which a character sets off, radians.
 const MOST_ANGLE: f32 = 0.2;

@@ -20,6 +20,9 @@ use super::output::say;
 pub(crate) struct Arguments {
     /// Name of a clip in the folder of clips, or a clip file.
     clip: String,
+    /// Make its cycle alike to both sides.
+    #[arg(long)]
+    symmetric: bool,
     /// Play it backwards.
     #[arg(long)]
     reversed: bool,
@@ -82,6 +85,7 @@ pub(crate) fn run(model: &Model, folder: impl Fn() -> Result<ClipFolder>, a: &Ar
     let file = PathBuf::from(&a.clip);
     let clip = if file.is_file() { load_file(&file)? } else { folder()?.load(&a.clip)? };
     let made = ClipShare {
+        symmetric: a.symmetric,
         reversed: a.reversed,
         pace: a.pace,
         side_steps_mps: a.side_steps,

@@ -7,6 +7,7 @@ use policy_core::training::{ActionScaling, FrameHistory, Heights, discriminator_
 use policy_core::{BodyId, CharacterState, Controller, Heading, JointTargets, Skeleton};
 use random::Rng;
 
+use super::averaged::AveragedVelocity;
 use super::command::{Command, DT_SECS};
 use super::config::EnvironmentConfig;
 use super::demonstrations::Demonstrations;
@@ -83,6 +84,8 @@ pub struct Env {
     pub(super) exploration: Exploration,
     /// Where it faced when the episode began, world, of unit length.
     pub(super) faced_first: Vec2,
+    /// The velocity that is paid for, over the episode.
+    pub(super) averaged: AveragedVelocity,
     /// Ticks of the episode in which it stood.
     pub(super) stood_ticks: u32,
     /// True when actions arrive one tick late in this episode.
@@ -127,6 +130,7 @@ impl Env {
             played: PlayedStarts::new(),
             exploration: Exploration::default(),
             faced_first: Vec2::X,
+            averaged: AveragedVelocity::default(),
             stood_ticks: 0,
             delayed: false,
             targets: [targets.clone(), targets],
@@ -170,7 +174,10 @@ impl Env {
         self.history.input_into(discriminator_input);
         self.age += 1;
         self.stood_ticks += u32::from(context.heights.stands(&self.state));
-        let terms = self.reward(context, (self.root_position() - before) / DT_SECS);
+        let velocity = (self.root_position() - before) / DT_SECS;
+        let velocity = paid_velocity(&config.reward, context.skeleton, &self.state, velocity);
+        let velocity = self.averaged.tick(velocity, config.reward.averaging_secs);
+        let terms = self.reward(context, velocity);
         if diverged || !self.state.is_finite() || self.has_failed(context) {
             if !diverged && self.state.is_finite() {
                 self.pre_failure.failed(&mut self.rng);
@@ -223,7 +230,7 @@ impl Env {
         self.company.as_ref().map_or(self.character.contacts(), |company| company.contacts())
     }
 
-    /// Reward terms of a tick, without tracking.
+    /// Reward terms of a tick for the velocity that is paid for, without tracking.
     pub(super) fn reward(&self, context: &EnvContext<'_>, velocity: Vec2) -> RewardTerms {
         let (config, graph, position) = (&context.config.reward, context.graph, self.command.position);
         let prompt_mps = if config.prompt_start { self.command.prompt_mps(graph) } else { 0.0 };
@@ -236,7 +243,6 @@ impl Env {
                 None => None,
             },
         };
-        let velocity = paid_velocity(config, context.skeleton, &self.state, velocity);
         let height = (config.height_share, graph.root_metres(position));
         let terms = match config.task {
             Task::Target if self.command.is_late() => RewardTerms::default(),

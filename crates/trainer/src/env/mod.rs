@@ -3,6 +3,7 @@
 //!
 //! Observation, action and discriminator features are policy-core's, physics is physics-bridge's.
 
+mod averaged;
 mod command;
 mod config;
 mod demonstrations;

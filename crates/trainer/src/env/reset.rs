@@ -8,6 +8,7 @@ use random::Rng;
 use random::limp::{go_limp, random_attitude};
 use serde::{Deserialize, Serialize};
 
+use super::averaged::AveragedVelocity;
 use super::command::Command;
 use super::demonstrations::ReferenceState;
 use super::env::{Env, EnvContext};
@@ -100,6 +101,7 @@ impl Env {
         self.age = self.born_at;
         self.pre_failure.begin();
         (self.stood_ticks, self.lost_ticks) = (0, 0);
+        self.averaged = AveragedVelocity::default();
         self.delayed = self.rng.chance(config.randomisation.latency_share);
         self.has_late_targets = false;
         let before_failure =

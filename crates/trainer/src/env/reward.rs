@@ -37,6 +37,9 @@ pub struct RewardConfig {
     /// Share of the head's velocity in the velocity that is paid for; the rest is the root's. Paid for the root alone, a character that sets
     /// off pushes its pelvis ahead and leans back.
     pub head_speed_share: f32,
+    /// Time over which the velocity that is paid for is averaged, seconds; 0 to pay for that of each tick. A gait that sways keeps its sway and is
+    /// paid for where it goes.
+    pub averaging_secs: f32,
     /// Share of the speed reward that falls evenly with the velocity error, from 1 at none to 0 at twice the commanded speed.
     /// It has a slope where the bells are flat: right after the stick was flipped.
     pub linear_speed_share: f32,
@@ -82,6 +85,7 @@ impl Default for RewardConfig {
             turning_style_factor: 1.0,
             sideways_weight: 0.25,
             head_speed_share: 0.0,
+            averaging_secs: 0.0,
             linear_speed_share: 0.0,
             strict_facing_share: 0.0,
             kept_facing_share: 0.0,

@@ -29,6 +29,9 @@ pub struct ClipShare {
     /// First and last second of the clip that count; the whole clip when there are none.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub seconds: Option<[f32; 2]>,
+    /// True for a cycle that is alike to both sides, made of the clip and its mirror image.
+    #[serde(default, skip_serializing_if = "is_false")]
+    pub symmetric: bool,
     /// Seconds for which its last pose is held at its end. Then it no longer begins anew.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub hold_seconds: Option<f32>,
@@ -59,6 +62,7 @@ impl ClipShare {
             share: 1.0,
             mirror: true,
             seconds: None,
+            symmetric: false,
             hold_seconds: None,
             reversed: false,
             pace: 1.0,
@@ -89,6 +93,9 @@ impl ClipShare {
         }
         if self.punch {
             clip = clip.punch()?;
+        }
+        if self.symmetric {
+            clip = clip.symmetric()?;
         }
         if self.reversed {
             clip = clip.reversed();

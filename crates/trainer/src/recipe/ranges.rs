@@ -51,6 +51,7 @@ const RANGES: &[(&str, f64, f64)] = &[
     ("environment.reward.turning_style_factor", 0.0, 1.0),
     ("environment.reward.sideways_weight", 0.0, 100.0),
     ("environment.reward.head_speed_share", 0.0, 1.0),
+    ("environment.reward.averaging_secs", 0.0, 10.0),
     ("environment.reward.kept_facing_share", 0.0, 1.0),
     ("environment.reward.linear_speed_share", 0.0, 1.0),
     ("environment.reward.strict_facing_share", 0.0, 1.0),
