@@ -74,6 +74,12 @@ impl OnGraph<'_> {
         self.acting().iter().all(|node| speed(*node) > 0.0 && speed(*node) < GOES_MPS)
     }
 
+    /// Whether the gaits that act here are as high as each other, by their fall heights.
+    fn is_level(&self) -> bool {
+        let [one, other] = self.acting().map(|node| self.graph.node(node).fall_height);
+        one == other
+    }
+
     /// The gaits that act: one twice where it acts alone.
     fn acting(&self) -> [NodeId; 2] {
         let GraphPosition { from, to, .. } = self.position;
@@ -171,7 +177,7 @@ impl Urgency {
                 Self {
                     to_move: off,
                     as_asked: steady(
-                        !mostly_stands(graph, position),
+                        !mostly_stands(graph, position) && place.is_level(),
                         if on_the_spot { turn.share } else { off },
                     ),
                     at_pace: match arrived {

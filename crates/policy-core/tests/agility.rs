@@ -233,13 +233,14 @@ fn a_gait_that_turns_on_the_spot_is_left_to_its_steady_variant_however_it_sways_
 }
 
 #[test]
-fn a_place_between_two_gaits_becomes_steady_from_either_side_unless_it_mostly_stands() {
+fn a_place_between_two_gaits_becomes_steady_from_either_side_unless_it_mostly_stands_or_leads_down() {
     let roll = policy("roll");
-    let places = [(0.6, 0.6), (0.5, 0.5), (0.4, 0.0)];
-    let from_both_sides =
-        places.iter().flat_map(|&(place, wanted)| [(0.0, place, wanted), (1.0, place, wanted)]);
-    for (before, coordinate, wanted) in from_both_sides {
+    let places = [(0.6, 0.5, 0.6), (0.5, 0.5, 0.5), (0.4, 0.5, 0.0), (0.6, 0.4, 0.0), (1.0, 0.4, 1.0)];
+    let from_both_sides = places.iter().flat_map(|place| [(0.0, place), (1.0, place)]);
+    for (before, &(coordinate, fall_height, wanted)) in from_both_sides {
         let mut controller = Controller::new(changed_pack(false, |manifest| {
+            manifest.policies[0].fall_height = Some(0.5);
+            manifest.policies[1].fall_height = Some(fall_height);
             manifest.policies[1].agile = None;
             manifest.policies[1].steady = Some("roll".into());
         }));
@@ -254,7 +255,7 @@ fn a_place_between_two_gaits_becomes_steady_from_either_side_unless_it_mostly_st
         }
         assert!(
             (share - wanted).abs() < 1e-5,
-            "from {before} to {coordinate}: all of the walk's weight unless it mostly stands, found {share}"
+            "from {before} to {coordinate}, walk at {fall_height} m: expected {wanted}, found {share}"
         );
     }
 }
