@@ -1,4 +1,4 @@
-//! The velocity of a character over a few seconds. Some gaits sway: a crawl heads 30 degrees to one side and then to the other.
+//! The velocity of a character over a few seconds. Some gaits sway: a crawl heads 50 degrees to one side and then to the other.
 //! Paid for the velocity of each tick, a character gives up the sway of its clip; paid for the average, it keeps the sway and
 //! goes the right way.
 
