@@ -122,8 +122,7 @@ impl Clip {
         let after = self.times.partition_point(|t| *t <= time).clamp(1, last);
         let (a, b) = (after - 1, after);
         let t = ((time - self.times[a]) / (self.times[b] - self.times[a])).clamp(0.0, 1.0);
-        let pairs = self.local_rotations[a].iter().zip(&self.local_rotations[b]);
-        let rotations = pairs.map(|(a, b)| a.slerp(*b, t)).collect();
+        let rotations = between(&self.local_rotations[a], &self.local_rotations[b], t);
         (self.root_positions[a].lerp(self.root_positions[b], t), rotations)
     }
 
@@ -186,13 +185,10 @@ impl Clip {
         }
         // Clips that were checked have frames, and a rotation of each body in every one; so below.
         let (first, mirrored) = (other.root_positions[0], &other.mirrored().local_rotations[0]);
-        let pairs = other.local_rotations[0].iter().zip(mirrored);
-        let rotations: Vec<Quat> = pairs.map(|(one, other)| one.slerp(*other, 0.5)).collect();
+        let rotations = between(&other.local_rotations[0], mirrored, 0.5);
         let root =
             |p: &Vec3| Vec3::new((1.0 - share) * p.x, (1.0 - share) * p.y, p.z + share * (first.z - p.z));
-        let turn = |frame: &Vec<Quat>| -> Vec<Quat> {
-            frame.iter().zip(&rotations).map(|(from, to)| from.slerp(*to, share)).collect()
-        };
+        let turn = |frame: &Vec<Quat>| between(frame, &rotations, share);
         Ok(Self {
             name: format!("{} towards {}", self.name, other.name),
             root_positions: self.root_positions.iter().map(root).collect(),
@@ -242,6 +238,11 @@ impl Clip {
         let other = twin_name(name);
         other.and_then(|other| self.bodies.iter().position(|body| *body == other)).unwrap_or(index)
     }
+}
+
+/// Rotations of all bodies this share of the way, in [0, 1], from one pose to another.
+fn between(from: &[Quat], to: &[Quat], share: f32) -> Vec<Quat> {
+    from.iter().zip(to).map(|(from, to)| from.slerp(*to, share)).collect()
 }
 
 /// The name of the body or hinge on the other side: with `left` where this one has `right`, and the other way round. `None` for one in the

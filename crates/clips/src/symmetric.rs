@@ -1,8 +1,8 @@
 //! A gait that is alike to both sides, made of one that limps.
 
-use glam::{Quat, Vec3};
+use glam::Quat;
 
-use crate::{Clip, ClipError};
+use crate::{Clip, ClipError, between};
 
 impl Clip {
     /// A cycle that is its own mirror image half a cycle later: each frame is half-way between the clip and its mirror image, half a
@@ -23,8 +23,7 @@ impl Clip {
             let later = (time + 0.5 * secs) % secs;
             let ((one, rotations), (other, twins)) = (clip.sample(*time), mirrored.sample(later));
             let sway = 0.5 * (one + other - offset * (time + later) / secs);
-            let rotations: Vec<Quat> = rotations.iter().zip(&twins).map(|(a, b)| a.slerp(*b, 0.5)).collect();
-            (offset * *time / secs + sway, rotations)
+            (offset * *time / secs + sway, between(&rotations, &twins, 0.5))
         };
         let (root_positions, local_rotations) = self.times.iter().map(frame).unzip();
         let name = format!("{} (symmetric)", self.name);
@@ -36,7 +35,7 @@ impl Clip {
         let way = self.cycle_offset().truncate();
         let turn = Quat::from_rotation_z(if way.length() > 0.01 { -way.to_angle() } else { 0.0 });
         let mut clip = self.clone();
-        clip.root_positions.iter_mut().for_each(|p: &mut Vec3| *p = turn * *p);
+        clip.root_positions.iter_mut().for_each(|p| *p = turn * *p);
         // A clip that was checked has a root in every frame.
         clip.local_rotations.iter_mut().for_each(|frame| frame[0] = turn * frame[0]);
         clip

@@ -75,7 +75,7 @@ impl OnGraph<'_> {
     }
 
     /// Whether the gaits that act here are as high as each other, by their fall heights.
-    fn is_level(&self) -> bool {
+    fn keeps_height(&self) -> bool {
         let [one, other] = self.acting().map(|node| self.graph.node(node).fall_height);
         one == other
     }
@@ -177,7 +177,7 @@ impl Urgency {
                 Self {
                     to_move: off,
                     as_asked: steady(
-                        !mostly_stands(graph, position) && place.is_level(),
+                        !mostly_stands(graph, position) && place.keeps_height(),
                         if on_the_spot { turn.share } else { off },
                     ),
                     at_pace: match arrived {
