@@ -33,6 +33,9 @@ pub const DISCRIMINATOR: &str = "discriminator";
 /// Role of the discriminator of a parent's style.
 pub const PARENT_DISCRIMINATOR: &str = "parent_discriminator";
 
+/// Role of the policy whose symmetric mean is learned.
+pub const TEACHER: &str = "teacher";
+
 /// Role of the critic.
 pub const CRITIC: &str = "critic";
 
@@ -148,6 +151,7 @@ impl Checkpoint {
     #[must_use]
     pub fn slim(mut self) -> Self {
         self.networks.remove(PARENT_DISCRIMINATOR);
+        self.networks.remove(TEACHER);
         let averages: Vec<String> = self.networks.keys().filter(|r| r.ends_with(EMA)).cloned().collect();
         for role in averages {
             let actor = format!("{}{ACTOR}", role.strip_suffix(EMA).unwrap_or_default());

@@ -153,6 +153,10 @@ fn fields_that_do_not_fit_together_are_named() {
     assert!(parse(&format!("{GOOD}{tracking}{clock}{alike}")).is_ok());
     let later = format!("[[phases]]\nsamples = 1000\n{tracking}{clock}{alike}");
     assert!(error(&later).contains("ppo.symmetry"), "a clock that the first phase has not");
+    let symmetrised = "ppo.symmetrise = true\n";
+    assert!(error(symmetrised).contains("ppo.symmetrise"), "no symmetry loss");
+    assert!(error_together(&format!("{symmetrised}{alike}")).contains("ppo.symmetrise"));
+    assert!(parse(&format!("{GOOD}{symmetrised}{alike}")).is_ok());
     let in_play = "environment.reset.in_play = { share = 0.5, maximum_speed_mps = 0.7 }\n";
     assert!(error(in_play).contains("in_play") && error_together(in_play).contains("in_play"));
     assert!(parse(&format!("{GOOD}{tracking}{in_play}")).is_ok());

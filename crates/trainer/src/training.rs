@@ -5,7 +5,7 @@ use policy_core::GraphPosition;
 use policy_core::training::ActionScaling;
 
 use crate::amp::DiscriminatorReport;
-use crate::checkpoint::{ACTOR, CRITIC, DISCRIMINATOR, EMA, PARENT_DISCRIMINATOR};
+use crate::checkpoint::{ACTOR, CRITIC, DISCRIMINATOR, EMA, PARENT_DISCRIMINATOR, TEACHER};
 use crate::env::{
     EnvironmentConfig, EpisodeReport, GraphNode, Normalisers, RandomisationConfig, RewardTerms,
     TrainingGraph, VecEnv,
@@ -112,7 +112,7 @@ impl Training {
     }
 
     /// Networks that learn, with their optimisers, by their roles in a checkpoint: `actor`, its moving average `ema`,
-    /// `discriminator`, `critic`. Where skills are trained together all but the last have the skill's name before them, with a
+    /// `discriminator`, `critic`; and the `teacher`, which stays as it is. Where skills are trained together all but the last have the skill's name before them, with a
     /// dot.
     pub fn networks_mut(&mut self) -> Vec<(String, &mut Network, Option<&mut Adam>)> {
         let together = !self.recipe.paths.is_empty();
@@ -138,6 +138,9 @@ impl Training {
             if let Some(d) = &mut scorer.discriminator {
                 all.push((format!("{from}-{to}.{DISCRIMINATOR}"), &mut d.network, Some(&mut d.adam)));
             }
+        }
+        if let Some(teacher) = &mut self.learner.teacher {
+            all.push((TEACHER.to_owned(), teacher, None));
         }
         all.push((CRITIC.to_owned(), &mut self.learner.critic, Some(&mut self.learner.critic_adam)));
         all
@@ -177,6 +180,9 @@ impl Training {
             self.learner.actors.iter_mut().for_each(|a| a.learning_rate = phase.ppo.learning_rate);
         }
         self.learner.config.clone_from(&phase.ppo);
+        let teacher = self.learner.teacher.take().filter(|_| earlier == index);
+        self.learner.teacher =
+            phase.ppo.symmetrise.then(|| teacher.unwrap_or_else(|| self.learner.actor().clone()));
         self.discriminators.set_config(&phase.discriminator);
         if self.recipe.paths.is_empty() {
             let last = self.shared.graph.nodes().len() - 1;
@@ -236,15 +242,17 @@ impl Training {
         let [inputs, joints] = [skeleton.policy_input_len(), skeleton.joint_count()];
         let scored = skeleton.discriminator_input_len();
         self.rollout.clear();
-        let cloning = self.learner.config.behaviour_cloning > 0.0;
-        self.rollout.cloning_targets.resize(if cloning { self.rollout.actions.len() } else { 0 }, f32::NAN);
+        let symmetrises = self.learner.config.symmetrise;
+        let tracks = self.learner.config.behaviour_cloning > 0.0;
+        let targets = if tracks || symmetrises { self.rollout.actions.len() } else { 0 };
+        self.rollout.cloning_targets.resize(targets, f32::NAN);
         for step in 0..self.rollout.horizon {
             let rows = step * n..(step + 1) * n;
             self.rollout.critic_inputs[rows.start * width..rows.end * width]
                 .copy_from_slice(&self.envs.inputs);
             let seen = self.envs.inputs.chunks_exact(width).zip(self.envs.envs());
             for (row, (input, env)) in rows.clone().zip(seen) {
-                if cloning {
+                if tracks {
                     let out = &mut self.rollout.cloning_targets[row * joints..(row + 1) * joints];
                     env.reference_action_into(&context, &self.scaling, out);
                 }
@@ -255,6 +263,9 @@ impl Training {
                 self.rollout.deterministic[row] = env.is_deterministic();
             }
             self.learner.act(&mut self.rollout, step);
+            if symmetrises {
+                self.learner.symmetric_targets(&mut self.rollout, step);
+            }
             let actions = &self.rollout.actions[rows.start * joints..rows.end * joints];
             let frames = rows.start * scored..rows.end * scored;
             self.envs.step(&context, actions, &mut self.discriminator_inputs[frames]);

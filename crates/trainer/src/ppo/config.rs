@@ -48,8 +48,19 @@ pub struct PpoConfig {
     /// Weight of the symmetry loss: the squared distance between the mean action and the mirror image of the mean action in the
     /// mirrored state (Yu, Turk, Liu 2018). It takes the name of each body and hinge with `left` for `right` to be its mirror image.
     pub symmetry: f32,
+    /// Learns the mean of the policy that the phase began with and of its mirror image, by behaviour cloning on its own rollouts, and nothing
+    /// from rewards. The learning rate stays at its largest value. Needs a symmetry loss, which cares for the mirrored states.
+    pub symmetrise: bool,
     /// Hidden sizes of the critic.
     pub critic_hidden: Vec<usize>,
+}
+
+impl PpoConfig {
+    /// Weight of the squared distance between the mean action and the target of behaviour cloning.
+    #[must_use]
+    pub fn cloning_weight(&self) -> f32 {
+        if self.symmetrise { 1.0 } else { self.behaviour_cloning }
+    }
 }
 
 impl Default for PpoConfig {
@@ -66,6 +77,7 @@ impl Default for PpoConfig {
             behaviour_cloning: 0.0,
             regularisation: 0.0,
             symmetry: 0.0,
+            symmetrise: false,
             critic_hidden: vec![256, 128],
         }
     }

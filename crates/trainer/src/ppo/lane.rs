@@ -142,6 +142,7 @@ pub(super) struct Shared<'a> {
     pub(super) gamma: f32,
     pub(super) action_std: f32,
     pub(super) behaviour_cloning: f32,
+    pub(super) ignores_rewards: bool,
     /// With a symmetry loss, and its weight.
     pub(super) mirror: Option<(&'a Mirror, f32)>,
     pub(super) scale: f32,
@@ -160,7 +161,11 @@ impl Shared<'_> {
         let kl = kl_divergence(mean, acted, self.action_std);
         sums.kl += kl;
         sums.clipped += f32::from(u8::from((ratio - 1.0).abs() > CLIP));
-        let slope = if stopped { 0.0 } else { -advantage * ratio / (self.action_std * self.action_std) };
+        let slope = if stopped || self.ignores_rewards {
+            0.0
+        } else {
+            -advantage * ratio / (self.action_std * self.action_std)
+        };
         for ((d, m), a) in delta.iter_mut().zip(mean).zip(action) {
             let excess = (m.abs() - 1.0).max(0.0).copysign(*m);
             *d = (slope * (a - m) + 2.0 * BOUND_PENALTY * excess) * self.scale;

@@ -57,6 +57,8 @@ pub struct Learner {
     pub critic_adam: Adam,
     /// The mirror image of inputs and actions; the symmetry loss needs it.
     pub mirror: Option<Mirror>,
+    /// What the actor learns the symmetric mean of, while a phase asks for that: the policy that the phase began with.
+    pub teacher: Option<Network>,
     /// Draws actions and shuffles rows.
     pub rng: Rng,
     pub(super) lanes: Vec<Lane>,
@@ -106,6 +108,7 @@ impl Learner {
             gathered: Gathered::default(),
             bootstrap: Vec::new(),
             mirror: None,
+            teacher: None,
             config,
             actors,
             edges,
@@ -154,6 +157,31 @@ impl Learner {
             for (&row, mean) in rows.iter().zip(out.chunks_exact(actions)) {
                 means[row * actions..(row + 1) * actions].copy_from_slice(mean);
             }
+        }
+    }
+
+    /// Writes the targets of behaviour cloning of tick `step`: the mean of the teacher's action and the mirror image of its action in the mirrored
+    /// state.
+    ///
+    /// # Panics
+    /// Without a teacher, a mirror or room for the targets.
+    pub fn symmetric_targets(&mut self, rollout: &mut Rollout, step: usize) {
+        let (Some(teacher), Some(mirror)) = (&self.teacher, &self.mirror) else {
+            panic!("expected a teacher and a mirror");
+        };
+        let (inputs, actions) = (teacher.inputs(), teacher.outputs());
+        let rows = step * rollout.num_envs..(step + 1) * rollout.num_envs;
+        let seen = &rollout.inputs[rows.start * inputs..rows.end * inputs];
+        let targets = &mut rollout.cloning_targets[rows.start * actions..rows.end * actions];
+        let Gathered { input: mirrored, means: others, .. } = &mut self.gathered;
+        mirrored.resize(seen.len(), 0.0);
+        others.resize(targets.len(), 0.0);
+        let pairs = seen.chunks_exact(inputs).zip(mirrored.chunks_exact_mut(inputs));
+        pairs.for_each(|(seen, mirrored)| mirror.inputs.apply_into(seen, mirrored));
+        self.actor_batch.evaluate(teacher, None, seen, targets);
+        self.actor_batch.evaluate(teacher, None, mirrored, others);
+        for (target, other) in targets.chunks_exact_mut(actions).zip(others.chunks_exact(actions)) {
+            mirror.actions.average_into(other, target);
         }
     }
 

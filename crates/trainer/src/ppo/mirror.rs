@@ -62,6 +62,16 @@ impl SignedPermutation {
             *out = sign * values[*from];
         }
     }
+
+    /// Makes of `values` the mean of themselves and of the mirror image of `others`.
+    ///
+    /// # Panics
+    /// When `others` is shorter than the permutation.
+    pub fn average_into(&self, others: &[f32], values: &mut [f32]) {
+        for (value, (from, sign)) in values.iter_mut().zip(&self.entries) {
+            *value = 0.5 * (*value + sign * others[*from]);
+        }
+    }
 }
 
 /// The mirror image of policy inputs and of actions.

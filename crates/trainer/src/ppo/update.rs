@@ -79,8 +79,9 @@ impl Learner {
             behaviour_cloning: if rollout.cloning_targets.is_empty() {
                 0.0
             } else {
-                self.config.behaviour_cloning
+                self.config.cloning_weight()
             },
+            ignores_rewards: self.config.symmetrise,
             mirror: self.mirror.as_ref().map(|m| (m, self.config.symmetry)).filter(|(_, w)| *w > 0.0),
             scale: 1.0 / minibatch.len() as f32,
         };
@@ -125,7 +126,7 @@ impl Learner {
         let config = &self.config;
         for (actor, [sum, weight]) in self.actors.iter_mut().zip(&self.kl) {
             let kl = sum / weight;
-            if config.behaviour_cloning > 0.0 {
+            if config.cloning_weight() > 0.0 {
                 actor.learning_rate = config.max_learning_rate;
             } else if kl > 1.5 * config.target_kl {
                 actor.learning_rate /= 1.3;

@@ -146,13 +146,55 @@ fn a_guide_leads_the_policy_and_rows_without_one_do_not() {
     assert!(led(f32::NAN).abs() < 0.3, "{}", led(f32::NAN));
 }
 
+/// The mirror image of a cart: everything negated.
+fn mirror() -> Mirror {
+    let negated = |count: usize| SignedPermutation::new((0..count).map(|i| (i, -1.0)).collect());
+    Mirror { inputs: negated(2), actions: negated(1) }
+}
+
+#[test]
+fn a_policy_learns_the_mean_of_its_teacher_and_the_mirror_image_whatever_it_is_paid() {
+    let mut learner = learner(8);
+    learner.mirror = Some(mirror());
+    let mut rng = Rng::new(8, 1);
+    let teacher = Network::new(&[2, 32, 1], 1.0, &mut rng);
+    let act = |learner: &mut Learner, input: [f32; 2]| {
+        let mut mean = [0.0];
+        learner.means_into(&input, &[0], &[0.0], &mut mean);
+        mean[0]
+    };
+    learner.actors[0].network.clone_from(&teacher);
+    let [seen, mirrored] = [[0.2, -0.1], [-0.2, 0.1]];
+    let [before, before_mirrored] = [act(&mut learner, seen), act(&mut learner, mirrored)];
+    assert!((before + before_mirrored).abs() > 0.05, "the teacher is not symmetric");
+    learner.teacher = Some(teacher);
+    (learner.config.symmetrise, learner.config.symmetry) = (true, 1.0);
+    learner.config.max_learning_rate = 3e-3;
+    let mut rollout = Rollout::new((STEPS, CHARACTERS), (2, 3), 1);
+    rollout.cloning_targets = vec![f32::NAN; STEPS * CHARACTERS];
+    for _ in 0..200 {
+        for input in &mut rollout.inputs {
+            *input = 0.3 * rng.normal();
+        }
+        for step in 0..STEPS {
+            learner.act(&mut rollout, step);
+            learner.symmetric_targets(&mut rollout, step);
+        }
+        rollout.advantages.iter_mut().for_each(|advantage| *advantage = rng.normal());
+        learner.update(&rollout);
+    }
+    let expected = 0.5 * (before - before_mirrored);
+    let [after, after_mirrored] = [act(&mut learner, seen), act(&mut learner, mirrored)];
+    assert!((after - expected).abs() < 0.02, "{after}, {expected} of {before}");
+    assert!((after_mirrored + expected).abs() < 0.02, "{after_mirrored}, {} of {before_mirrored}", -expected);
+}
+
 #[test]
 fn a_symmetry_loss_makes_a_policy_act_in_the_mirror_as_its_mirror_image() {
     let asymmetry = |symmetry: f32| {
         let mut learner = learner(7);
         learner.config.symmetry = symmetry;
-        let negated = |count: usize| SignedPermutation::new((0..count).map(|i| (i, -1.0)).collect());
-        learner.mirror = Some(Mirror { inputs: negated(2), actions: negated(1) });
+        learner.mirror = Some(mirror());
         let mut rng = Rng::new(7, 1);
         let mut carts: Vec<Cart> = (0..CHARACTERS).map(|_| Cart::new(&mut rng)).collect();
         let mut rollout = Rollout::new((STEPS, CHARACTERS), (2, 3), 1);

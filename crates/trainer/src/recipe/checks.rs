@@ -172,6 +172,13 @@ impl Recipe {
                 ppo.behaviour_cloning.to_string(),
             ),
             (
+                !ppo.symmetrise
+                    || (!together && !self.edge && ppo.symmetry > 0.0 && ppo.behaviour_cloning == 0.0),
+                "ppo.symmetrise",
+                "true beside a symmetry above 0 alone, without paths, edge or behaviour_cloning",
+                ppo.symmetrise.to_string(),
+            ),
+            (
                 command.clock_seconds == 0.0 || (!together && reward.tracking_weight > 0.0),
                 "environment.command.clock_seconds",
                 "0 beside paths and without a tracking_weight: the clock is that of the clip that is tracked",

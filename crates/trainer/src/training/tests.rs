@@ -165,6 +165,29 @@ fn a_run_continues_with_its_seed_and_rates_and_another_begins_with_its_own() {
     assert_ne!(other.training.learner.rng, rng, "the random numbers of its own seed");
 }
 
+#[test]
+fn a_teacher_is_the_policy_that_its_phase_began_with_and_a_resumed_run_has_the_same() {
+    let folder = tempfile::tempdir().unwrap();
+    let workspace = workspace(folder.path());
+    let symmetrised =
+        "[[phases]]\nsamples = 16\n\n[[phases]]\nsamples = 32\nppo.symmetry = 1.0\nppo.symmetrise = true";
+    let walk = recipe("walk", "", symmetrised);
+    let mut run = workspace.prepare(walk.clone(), None, Existing::Refuse).unwrap();
+    run.advance().unwrap();
+    assert!(run.training.learner.teacher.is_none());
+    let began_with = run.training.learner.actor().clone();
+    run.advance().unwrap();
+    assert_ne!(*run.training.learner.actor(), began_with);
+    assert_eq!(run.training.learner.teacher.as_ref(), Some(&began_with));
+    run.save().unwrap();
+    drop(run);
+
+    let mut resumed = workspace.prepare(walk, None, Existing::Resume).unwrap();
+    resumed.advance().unwrap();
+    assert_eq!(resumed.training.learner.teacher, Some(began_with));
+    assert!(!workspace.required("walk").unwrap().0.slim().networks.contains_key(TEACHER));
+}
+
 /// A run of one iteration that was saved.
 fn saved_run(workspace: &Workspace, recipe: &Recipe) -> Run {
     let mut run = workspace.prepare(recipe.clone(), None, Existing::Refuse).unwrap();

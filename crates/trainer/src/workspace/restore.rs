@@ -5,7 +5,9 @@ use std::path::Path;
 
 use anyhow::{Result, bail};
 
-use crate::checkpoint::{ACTOR, CRITIC, Checkpoint, DISCRIMINATOR, EMA, PARENT_DISCRIMINATOR, Progress};
+use crate::checkpoint::{
+    ACTOR, CRITIC, Checkpoint, DISCRIMINATOR, EMA, PARENT_DISCRIMINATOR, Progress, TEACHER,
+};
 use crate::nn::Adam;
 use crate::pack::TrainedSkill;
 use crate::training::Training;
@@ -35,6 +37,9 @@ pub(super) fn restore(
     path: &Path,
     begins: bool,
 ) -> Result<f64> {
+    if !begins && checkpoint.networks.contains_key(TEACHER) {
+        training.learner.teacher = Some(training.learner.actor().clone());
+    }
     for (role, network, adam) in training.networks_mut() {
         // Discriminators of a parent or half-way can be learned anew, and the critic of a run that begins; a moving average
         // begins where its policy is.
