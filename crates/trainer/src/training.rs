@@ -112,8 +112,8 @@ impl Training {
     }
 
     /// Networks that learn, with their optimisers, by their roles in a checkpoint: `actor`, its moving average `ema`,
-    /// `discriminator`, `critic`; and the `teacher`, which stays as it is. Where skills are trained together all but the last have the skill's name before them, with a
-    /// dot.
+    /// `discriminator`, `critic`; and the `teacher`, which stays as it is. Where skills are trained together all but the last have
+    /// the skill's name before them, with a dot.
     pub fn networks_mut(&mut self) -> Vec<(String, &mut Network, Option<&mut Adam>)> {
         let together = !self.recipe.paths.is_empty();
         let last = self.shared.graph.nodes().len() - 1;

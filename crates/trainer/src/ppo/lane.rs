@@ -80,8 +80,7 @@ impl Lane {
             let seen = self.input.len();
             self.input.resize(2 * seen, 0.0);
             let (seen, mirrored) = self.input.split_at_mut(seen);
-            let pairs = seen.chunks_exact(inputs).zip(mirrored.chunks_exact_mut(inputs));
-            pairs.for_each(|(seen, mirrored)| mirror.inputs.apply_into(seen, mirrored));
+            mirror.inputs.apply_rows_into(seen, mirrored);
             self.blend.extend_from_within(..);
         }
         let (network, line) = line_of(shared.actors, [from, to], &self.blend);

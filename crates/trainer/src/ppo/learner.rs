@@ -176,8 +176,7 @@ impl Learner {
         let Gathered { input: mirrored, means: others, .. } = &mut self.gathered;
         mirrored.resize(seen.len(), 0.0);
         others.resize(targets.len(), 0.0);
-        let pairs = seen.chunks_exact(inputs).zip(mirrored.chunks_exact_mut(inputs));
-        pairs.for_each(|(seen, mirrored)| mirror.inputs.apply_into(seen, mirrored));
+        mirror.inputs.apply_rows_into(seen, mirrored);
         self.actor_batch.evaluate(teacher, None, seen, targets);
         self.actor_batch.evaluate(teacher, None, mirrored, others);
         for (target, other) in targets.chunks_exact_mut(actions).zip(others.chunks_exact(actions)) {

@@ -63,6 +63,15 @@ impl SignedPermutation {
         }
     }
 
+    /// Writes the mirror image of every row of `rows` to the same row of `out`; rows are as long as the permutation.
+    ///
+    /// # Panics
+    /// When the permutation is empty.
+    pub fn apply_rows_into(&self, rows: &[f32], out: &mut [f32]) {
+        let pairs = rows.chunks_exact(self.len()).zip(out.chunks_exact_mut(self.len()));
+        pairs.for_each(|(row, out)| self.apply_into(row, out));
+    }
+
     /// Makes of `values` the mean of themselves and of the mirror image of `others`.
     ///
     /// # Panics
