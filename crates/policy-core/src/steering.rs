@@ -61,9 +61,17 @@ pub struct SteeringState {
 }
 
 impl Steering {
-    /// The target turned about the root so that the course goes to where it lies.
+    /// The target turned about the root so that the course goes to where it lies. The trim counts and grows by `trim_share`, in [0, 1]: it is that of
+    /// the gaits that drift, and a variant that turns in their place does not.
     #[must_use]
-    pub fn adjusted(self, memory: &mut SteeringState, state: &CharacterState, target: Vec2, dt: f32) -> Vec2 {
+    pub fn adjusted(
+        self,
+        memory: &mut SteeringState,
+        state: &CharacterState,
+        target: Vec2,
+        trim_share: f32,
+        dt: f32,
+    ) -> Vec2 {
         let root = state.root();
         memory.follow(self.velocity_secs, state, dt);
         let Some(to_target) = way_to(target, state) else { return target };
@@ -73,7 +81,7 @@ impl Steering {
         // Facing away, what counts is the side to turn to, not where the momentum of the old direction still leads.
         let error = if libm::fabsf(off_heading) > DRIFT_RADIANS { off_heading } else { moving * off_course };
         if libm::fabsf(off_heading) < DRIFT_RADIANS && libm::fabsf(off_course) < DRIFT_RADIANS {
-            self.trim(memory, moving * off_course, dt);
+            self.trim(memory, trim_share * moving * off_course, dt);
         }
         let largest = libm::fabsf(off_heading).max(LARGEST_RADIANS);
         let asked = if libm::fabsf(off_heading) > BEHIND_RADIANS {
@@ -86,7 +94,7 @@ impl Steering {
             BEHIND_RADIANS * memory.side
         } else {
             memory.side = 0.0;
-            (off_heading + self.lead * error + memory.trim).clamp(-largest, largest)
+            (off_heading + self.lead * error + trim_share * memory.trim).clamp(-largest, largest)
         };
         let turned = Heading::from_angle(asked - off_heading);
         root.position.truncate() + turned.world_from_heading_2d(to_target)

@@ -87,6 +87,24 @@ fn slow_characters_small_angles_and_low_gaits_have_none() {
 }
 
 #[test]
+fn what_a_gait_is_trimmed_by_is_none_of_the_turning_variants_business() {
+    // Where the policy sees its target, degrees to the left of the heading.
+    let seen = |controller: &mut Controller, moves, way| {
+        share(controller, moves, 0, 1.0, Some(way));
+        let [x, y] = controller.report().target;
+        y.atan2(x).to_degrees()
+    };
+    for way in [45.0, -45.0] {
+        let [mut drifted, mut straight] = [goes(0, 1.0, 1.0), goes(0, 1.0, 1.0)];
+        let drifts = Moves { goes: 12.0, ..AHEAD };
+        let asked: Vec<f32> = (0..30).map(|_| seen(&mut drifted, drifts, 0.0)).collect();
+        assert!(asked[29] < asked[0] - 5.0, "the trim grows to the right: {asked:?}");
+        let [trimmed, plain] = [&mut drifted, &mut straight].map(|c| seen(c, AHEAD, way));
+        assert!((trimmed - plain).abs() < 0.1, "{trimmed} and {plain} degrees, turning by {way}");
+    }
+}
+
+#[test]
 fn a_gait_slower_than_that_turns_on_the_spot_until_it_faces_its_target() {
     let mut manifest = common::gaits(|_| ());
     let crawl = &mut manifest.policies[policy("crawl")];

@@ -182,7 +182,7 @@ impl Controller {
     }
 
     /// The target that the policy is to see. Without one there is no course to hold, and the target of a skill stays as it is. A
-    /// character that strafes gets the trim alone.
+    /// character that strafes gets the trim alone, and one that turns gets it as far as its gaits act.
     pub(super) fn steered(
         &mut self,
         state: &CharacterState,
@@ -195,10 +195,11 @@ impl Controller {
             self.state.steering = SteeringState::default();
             return target;
         };
+        let trim_share = 1.0 - self.state.urgency.turn.share;
         let memory = &mut self.state.steering;
         Some(match strafing > 0.0 {
             true => steering.trimmed(memory, state, target, dt),
-            false => steering.adjusted(memory, state, target, dt),
+            false => steering.adjusted(memory, state, target, trim_share, dt),
         })
     }
 }

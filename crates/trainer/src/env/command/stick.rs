@@ -62,7 +62,7 @@ impl Command {
         };
         let assisted = TurnAssist::default().adjusted(graph.policy_graph(), state, &asked);
         let target = assisted.target.unwrap_or(self.target);
-        self.seen_target = Steering::default().adjusted(&mut self.steering, state, target, DT_SECS);
+        self.seen_target = Steering::default().adjusted(&mut self.steering, state, target, 1.0, DT_SECS);
         match assisted.goal {
             Goal::Path { coordinate, .. } => coordinate,
             _ => coordinate,
