@@ -142,7 +142,8 @@ impl Urgency {
     ///
     /// A speed beyond the one asked for is no error at first: the way back to a slower gait brakes. Of a character that has gone at its pace
     /// it is a push from behind. Gaits without a speed ask for nothing, and on an edge that is only crossed the body stands up, or goes
-    /// down, before it goes anywhere. Of one that turns on the spot the velocity sways: it goes as it is asked to wherever it does not turn.
+    /// down, before it goes anywhere. Of one that turns on the spot the velocity sways: it counts as steady in
+    /// its turns too, and comes out of one by its steady variant.
     pub(crate) fn next(
         self,
         place: OnGraph<'_>,
@@ -178,7 +179,7 @@ impl Urgency {
                     to_move: off,
                     as_asked: steady(
                         !mostly_stands(graph, position) && place.keeps_height(),
-                        if on_the_spot { turn.share } else { off },
+                        if on_the_spot { 0.0 } else { off },
                     ),
                     at_pace: match arrived {
                         false => 0.0,
