@@ -250,7 +250,10 @@ fn a_gait_that_turns_on_the_spot_comes_out_of_its_turn_by_its_steady_variant() {
     assert_eq!(acts(120, 0.0, Vec2::X)[119], [1.0, 0.0, 0.0], "steady");
     assert_eq!(acts(30, 0.3, Vec2::Y)[29], [0.0, 1.0, 0.0], "in a turn");
     let faces = acts(15, FRAC_PI_2, Vec2::Y);
-    assert!(faces[5][0] > 0.3 && faces[5][1] > 0.3 && faces.iter().all(|[_, _, gait]| *gait < 1e-6), "{faces:?}");
+    assert!(
+        faces[5][0] > 0.3 && faces[5][1] > 0.3 && faces.iter().all(|[_, _, gait]| *gait < 1e-6),
+        "{faces:?}"
+    );
     assert_eq!(faces[14], [1.0, 0.0, 0.0]);
 }
 
