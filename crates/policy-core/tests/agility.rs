@@ -2,7 +2,6 @@
 
 mod common;
 
-use std::f32::consts::FRAC_PI_2;
 use std::sync::Arc;
 
 use common::{acted, hand_over, policy, standing, weight};
@@ -231,30 +230,6 @@ fn a_gait_that_turns_on_the_spot_is_left_to_its_steady_variant_however_it_sways_
     };
     assert_eq!(last_share(0.3), [1.0, 0.0], "until the target lies aside");
     assert_eq!(last_share(1.0), [0.0, 0.0], "one that is faster is not as it was asked to be");
-}
-
-#[test]
-fn a_gait_that_turns_on_the_spot_comes_out_of_its_turn_by_its_steady_variant() {
-    let mut controller = Controller::new(changed_pack(false, |manifest| {
-        manifest.policies[1].speed_mps = Some(0.3);
-        manifest.policies[1].agile = None;
-        manifest.policies[1].steady = Some("roll".into());
-        manifest.policies[1].turning = Some("idle".into());
-    }));
-    let mut acts = |ticks: usize, faces: f32, direction: Vec2| -> Vec<[f32; 3]> {
-        let mut state = walking(0.3);
-        state.body_mut(BodyId::new(0)).rotation = Quat::from_rotation_z(faces);
-        let shares = |acted: Vec<(usize, f32)>| ["roll", "idle", "walk"].map(|p| weight(&acted, policy(p)));
-        (0..ticks).map(|_| shares(tick_towards(&mut controller, &state, direction))).collect()
-    };
-    assert_eq!(acts(120, 0.0, Vec2::X)[119], [1.0, 0.0, 0.0], "steady");
-    assert_eq!(acts(30, 0.3, Vec2::Y)[29], [0.0, 1.0, 0.0], "in a turn");
-    let faces = acts(15, FRAC_PI_2, Vec2::Y);
-    assert!(
-        faces[5][0] > 0.3 && faces[5][1] > 0.3 && faces.iter().all(|[_, _, gait]| *gait < 1e-6),
-        "{faces:?}"
-    );
-    assert_eq!(faces[14], [1.0, 0.0, 0.0]);
 }
 
 #[test]

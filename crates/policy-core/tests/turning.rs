@@ -125,6 +125,30 @@ fn a_gait_slower_than_that_turns_on_the_spot_until_it_faces_its_target() {
 }
 
 #[test]
+fn a_gait_that_turns_on_the_spot_comes_out_of_its_turn_by_its_steady_variant() {
+    const STEADY: &str = "walk";
+    let mut manifest = common::gaits(|_| ());
+    let crawl = &mut manifest.policies[policy("crawl")];
+    (crawl.speed_mps, crawl.turning, crawl.steady) = (Some(0.3), Some(TURNS.into()), Some(STEADY.into()));
+    let pack = Arc::new(CharacterPack::from_parts(manifest, common::tensors(0.0)).unwrap());
+    let config = ControllerConfig { give_way: None, ..ControllerConfig::default() };
+    let mut controller = Controller::with_config(pack, config);
+    let mut shares = |ticks: usize, faces: f32, way: f32| -> Vec<[f32; 2]> {
+        let moves = Moves { faces, goes: faces, speed: 0.3 };
+        let mut acts = || {
+            let turns = share(&mut controller, moves, 1, 3.0, Some(way));
+            [turns, weight_of(&controller, STEADY)]
+        };
+        (0..ticks).map(|_| acts()).collect()
+    };
+    assert_eq!(shares(240, 0.0, 0.0)[239], [0.0, 1.0], "it goes ahead");
+    assert_eq!(shares(30, 20.0, 90.0)[29], [1.0, 0.0], "in a turn");
+    let out = shares(14, 88.0, 90.0);
+    assert!(out.iter().all(|[turns, steady]| (turns + steady - 1.0).abs() < 1e-5), "{out:?}");
+    assert!(out[5][1] > 0.3 && out[13] == [0.0, 1.0], "{out:?}");
+}
+
+#[test]
 fn a_saved_state_goes_on_with_its_turn() {
     let mut controller = goes(0, 1.0, 1.0);
     share(&mut controller, AHEAD, 0, 1.0, Some(120.0));
