@@ -47,7 +47,7 @@ pub(crate) struct Turn {
     pub(crate) turns: bool,
     /// How far the turning variant acts, in [0, 1].
     pub(crate) share: f32,
-    /// The way to its target when it last faced it, world, of unit length; zero where it has not yet, since the last skill.
+    /// The way to its target when it last faced it to within [`FACES_RADIANS`], world, of unit length; zero where it has not yet, since the last skill.
     pub(crate) way: Vec2,
 }
 
@@ -76,7 +76,7 @@ impl Turn {
                     false => self.goes_about(state, way, off),
                 }
         });
-        let faced = towards.filter(|(_, off_heading)| *off_heading < BEGINS_RADIANS);
+        let faced = towards.filter(|(_, off_heading)| *off_heading < FACES_RADIANS);
         Self {
             turns,
             share: switched(self.share, turns, CROSS_SECS, dt),

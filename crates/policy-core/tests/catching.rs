@@ -5,7 +5,7 @@ mod common;
 use std::sync::Arc;
 
 use common::{acted, hand_over, moving, n, weight_of};
-use glam::{Vec2, Vec3};
+use glam::{Quat, Vec2, Vec3};
 use policy_core::{
     Blend, CharacterPack, CharacterState, Command, Controller, ControllerConfig, Goal, GraphPosition, PathId,
     PolicyId, Skeleton,
@@ -64,6 +64,25 @@ fn it_takes_all_in_the_tick_in_which_a_push_drives_the_body_off_its_course_and_f
             let last = (0..6).map(|_| share(&mut controller, coordinate, &driven(0.0))).last();
             assert_eq!(last, Some(0.0));
         }
+    }
+}
+
+#[test]
+fn a_stick_that_is_pushed_a_little_aside_is_no_push_until_the_body_faces_that_way() {
+    for degrees in [22.0_f32, 30.0, -30.0] {
+        let mut controller = goes(2.0, 2.0, true);
+        let way = Vec2::from_angle(degrees.to_radians());
+        let mut towards = |state: &CharacterState| share_towards(&mut controller, 2.0, state, 10.0 * way);
+        (0..15).for_each(|tick| {
+            assert_eq!(towards(&moving(Vec3::X * 2.0)), 0.0, "{degrees} degrees, tick {tick}");
+        });
+        let turned = |aside: f32| {
+            let mut state = moving((2.0 * way + aside * way.perp()).extend(0.0));
+            state.bodies[0].rotation = Quat::from_rotation_z(degrees.to_radians());
+            state
+        };
+        (0..30).for_each(|_| assert_eq!(towards(&turned(0.0)), 0.0, "it goes there"));
+        assert_eq!(towards(&turned(0.8)), 1.0, "that is a push");
     }
 }
 
