@@ -142,8 +142,8 @@ impl Urgency {
     ///
     /// A speed beyond the one asked for is no error at first: the way back to a slower gait brakes. Of a character that has gone at its pace
     /// it is a push from behind. Gaits without a speed ask for nothing, and on an edge that is only crossed the body stands up, or goes
-    /// down, before it goes anywhere. Of one that turns on the spot the velocity sways: it counts as steady in
-    /// its turns too, and comes out of one by its steady variant.
+    /// down, before it goes anywhere. Of one that turns on the spot the velocity sways: it counts as steady in its turns
+    /// too, and comes out of one by its steady variant.
     pub(crate) fn next(
         self,
         place: OnGraph<'_>,
