@@ -86,13 +86,17 @@ fn slow_characters_small_angles_and_low_gaits_have_none() {
     (0..3).for_each(|_| assert_eq!(share(&mut low, AHEAD, 1, 1.0, Some(90.0)), 0.0, "out of a crouch"));
 }
 
+/// Where the policy sees its target, degrees to the left of the heading.
+fn seen(controller: &Controller) -> f32 {
+    let [x, y] = controller.report().target;
+    y.atan2(x).to_degrees()
+}
+
 #[test]
 fn what_a_gait_is_trimmed_by_is_none_of_the_turning_variants_business() {
-    // Where the policy sees its target, degrees to the left of the heading.
     let seen = |controller: &mut Controller, moves, way| {
         share(controller, moves, 0, 1.0, Some(way));
-        let [x, y] = controller.report().target;
-        y.atan2(x).to_degrees()
+        seen(controller)
     };
     for way in [45.0, -45.0] {
         let [mut drifted, mut straight] = [goes(0, 1.0, 1.0), goes(0, 1.0, 1.0)];
@@ -122,6 +126,29 @@ fn a_gait_slower_than_that_turns_on_the_spot_until_it_faces_its_target() {
     assert!((shares[0] - (1.0 - DT / 0.4)).abs() < 1e-5 && shares[12] < 1e-6, "wherever it goes: {shares:?}");
     assert_eq!(at(Moves { faces: 140.0, ..slow }, 90.0), 0.0, "it sways");
     assert_eq!(at(Moves { faces: 165.0, ..slow }, 90.0), 1.0, "a push has turned it");
+}
+
+#[test]
+fn a_gait_that_turns_on_the_spot_gets_no_trim_and_while_it_turns_no_lead() {
+    let sees = |turns: bool| -> [f32; 2] {
+        let mut manifest = common::gaits(|_| ());
+        let crawl = &mut manifest.policies[policy("crawl")];
+        (crawl.speed_mps, crawl.turning) = (Some(0.3), turns.then(|| TURNS.into()));
+        let pack = Arc::new(CharacterPack::from_parts(manifest, common::tensors(0.0)).unwrap());
+        let config = ControllerConfig { give_way: None, turn_assist: None, ..ControllerConfig::default() };
+        let mut controller = Controller::with_config(pack, config);
+        let mut at = |goes: f32, way: f32| {
+            share(&mut controller, Moves { goes, speed: 0.3, ..AHEAD }, 1, 3.0, Some(way));
+            seen(&controller)
+        };
+        (0..120).for_each(|_| _ = at(0.0, 0.0));
+        (0..60).for_each(|_| _ = at(10.0, 0.0));
+        [at(10.0, 0.0), at(10.0, 60.0)]
+    };
+    let [ahead, aside] = sees(true);
+    assert!((ahead + 5.0).abs() < 0.2 && (aside - 60.0).abs() < 0.1, "half the error, then none: {ahead}, {aside}");
+    let [ahead, aside] = sees(false);
+    assert!(ahead < -15.0 && aside > 62.0, "a gait that can't turn gets both: {ahead}, {aside}");
 }
 
 #[test]

@@ -17,7 +17,7 @@ use crate::rising::{Rise, committed, rising_variant};
 use crate::skill::SkillProgress;
 use crate::state::CharacterState;
 use crate::state_check::countdown_secs;
-use crate::steering::SteeringState;
+use crate::steering::{Steering, SteeringState};
 use crate::strafe::waits_before_leaving;
 use crate::turning::Turn;
 use crate::variants::Lasting;
@@ -182,7 +182,8 @@ impl Controller {
     }
 
     /// The target that the policy is to see. Without one there is no course to hold, and the target of a skill stays as it is. A
-    /// character that strafes gets the trim alone, and one that turns gets it as far as its gaits act.
+    /// character that strafes gets the trim alone, and one that turns gets it as far as its gaits act. A gait that turns on the spot
+    /// sways, and its course with it: it gets no trim, and no lead while it turns.
     pub(super) fn steered(
         &mut self,
         state: &CharacterState,
@@ -195,7 +196,14 @@ impl Controller {
             self.state.steering = SteeringState::default();
             return target;
         };
-        let trim_share = 1.0 - self.state.urgency.turn.share;
+        let turn = self.state.urgency.turn;
+        let TickReport { position, goal, .. } = self.state.report;
+        let place = OnGraph { graph: self.pack.graph(), position, goal };
+        let sways = place.all_turn_on_the_spot() && place.all_have(|node| node.turning);
+        let (steering, trim_share) = match sways {
+            true => (Steering { lead: if turn.turns { 0.0 } else { steering.lead }, ..steering }, 0.0),
+            false => (steering, 1.0 - turn.share),
+        };
         let memory = &mut self.state.steering;
         Some(match strafing > 0.0 {
             true => steering.trimmed(memory, state, target, dt),
