@@ -28,7 +28,7 @@ const STRAYED_RADIANS: f32 = 1.2;
 const FACES_RADIANS: f32 = 0.35;
 const GOES_RADIANS: f32 = 0.2;
 
-/// The first of these for a turn on the spot.
+/// The first of these for a turn on the spot, which begins beyond it where the way has changed.
 const FACES_ON_THE_SPOT_RADIANS: f32 = 0.2;
 
 /// A character that is slower than this does not go; it sets off, metres per second. A gait that is slower turns on the spot.
@@ -101,10 +101,11 @@ impl Turn {
         }
     }
 
-    /// The same of a gait that turns on the spot. Its heading sways: where the way has not changed, it turns once it has strayed far.
+    /// The same of a gait that turns on the spot. It turns until it faces a way that has changed. Its heading sways: where the way has not
+    /// changed, it turns once it has strayed far.
     fn turns_on_the_spot(self, way: Vec2, off_heading: f32) -> bool {
-        let begins = if self.has_changed(way) { BEGINS_RADIANS } else { STRAYED_RADIANS };
-        off_heading > if self.turns { FACES_ON_THE_SPOT_RADIANS } else { begins }
+        let asked = self.turns || self.has_changed(way);
+        off_heading > if asked { FACES_ON_THE_SPOT_RADIANS } else { STRAYED_RADIANS }
     }
 
     /// Whether the way to the target is another one than when it last faced it.

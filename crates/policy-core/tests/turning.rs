@@ -126,6 +126,8 @@ fn a_gait_slower_than_that_turns_on_the_spot_until_it_faces_its_target() {
     assert!((shares[0] - (1.0 - DT / 0.4)).abs() < 1e-5 && shares[12] < 1e-6, "wherever it goes: {shares:?}");
     assert_eq!(at(Moves { faces: 140.0, ..slow }, 90.0), 0.0, "it sways");
     assert_eq!(at(Moves { faces: 165.0, ..slow }, 90.0), 1.0, "a push has turned it");
+    (0..13).for_each(|_| _ = at(Moves { faces: 90.0, ..slow }, 90.0));
+    assert_eq!(at(Moves { faces: 98.0, ..slow }, 112.0), 1.0, "the way has changed, and it sways that way already");
 }
 
 #[test]
