@@ -68,10 +68,11 @@ impl OnGraph<'_> {
         self.acting().iter().all(|node| variant(self.graph.node(*node)).is_some())
     }
 
-    /// Whether all gaits that act here move, and so slowly that they turn on the spot.
+    /// Whether all gaits that act here move, so slowly that their turning variants turn on the spot.
     pub(crate) fn all_turn_on_the_spot(&self) -> bool {
         let speed = |node| self.graph.node(node).speed_mps.unwrap_or(0.0);
-        self.acting().iter().all(|node| speed(*node) > 0.0 && speed(*node) < GOES_MPS)
+        self.all_have(|node| node.turning)
+            && self.acting().iter().all(|node| speed(*node) > 0.0 && speed(*node) < GOES_MPS)
     }
 
     /// Whether the gaits that act here are as high as each other, by their fall heights.

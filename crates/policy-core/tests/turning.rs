@@ -127,7 +127,11 @@ fn a_gait_slower_than_that_turns_on_the_spot_until_it_faces_its_target() {
     assert_eq!(at(Moves { faces: 140.0, ..slow }, 90.0), 0.0, "it sways");
     assert_eq!(at(Moves { faces: 165.0, ..slow }, 90.0), 1.0, "a push has turned it");
     (0..13).for_each(|_| _ = at(Moves { faces: 90.0, ..slow }, 90.0));
-    assert_eq!(at(Moves { faces: 98.0, ..slow }, 112.0), 1.0, "the way has changed, and it sways that way already");
+    assert_eq!(
+        at(Moves { faces: 98.0, ..slow }, 112.0),
+        1.0,
+        "the way has changed, and it sways that way already"
+    );
 }
 
 #[test]
@@ -148,7 +152,10 @@ fn a_gait_that_turns_on_the_spot_gets_no_trim_and_while_it_turns_no_lead() {
         [at(10.0, 0.0), at(10.0, 60.0)]
     };
     let [ahead, aside] = sees(true);
-    assert!((ahead + 5.0).abs() < 0.2 && (aside - 60.0).abs() < 0.1, "half the error, then none: {ahead}, {aside}");
+    assert!(
+        (ahead + 5.0).abs() < 0.2 && (aside - 60.0).abs() < 0.1,
+        "half the error, then none: {ahead}, {aside}"
+    );
     let [ahead, aside] = sees(false);
     assert!(ahead < -15.0 && aside > 62.0, "a gait that can't turn gets both: {ahead}, {aside}");
 }

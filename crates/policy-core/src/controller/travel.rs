@@ -199,8 +199,7 @@ impl Controller {
         let turn = self.state.urgency.turn;
         let TickReport { position, goal, .. } = self.state.report;
         let place = OnGraph { graph: self.pack.graph(), position, goal };
-        let sways = place.all_turn_on_the_spot() && place.all_have(|node| node.turning);
-        let (steering, trim_share) = match sways {
+        let (steering, trim_share) = match place.all_turn_on_the_spot() {
             true => (Steering { lead: if turn.turns { 0.0 } else { steering.lead }, ..steering }, 0.0),
             false => (steering, 1.0 - turn.share),
         };
