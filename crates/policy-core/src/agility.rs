@@ -15,6 +15,7 @@ use crate::graph::{Edge, PolicyGraph};
 use crate::heading::Heading;
 use crate::ids::NodeId;
 use crate::path::GraphPosition;
+use crate::report::TickReport;
 use crate::starts_and_stops::{next_start, next_stop};
 use crate::state::CharacterState;
 use crate::turning::{GOES_MPS, Turn};
@@ -62,7 +63,12 @@ pub(crate) struct OnGraph<'a> {
     pub(crate) goal: GraphPosition,
 }
 
-impl OnGraph<'_> {
+impl<'a> OnGraph<'a> {
+    /// Where the character of a report is, and where it is going.
+    pub(crate) fn of(graph: &'a PolicyGraph, report: &TickReport) -> Self {
+        Self { graph, position: report.position, goal: report.goal }
+    }
+
     /// Whether all gaits that act here have a variant.
     pub(crate) fn all_have(&self, variant: Variant) -> bool {
         self.acting().iter().all(|node| variant(self.graph.node(*node)).is_some())

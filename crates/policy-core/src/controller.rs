@@ -217,8 +217,7 @@ impl Controller {
             return false;
         }
         let heights = Heights::of(self.pack.skeleton(), state);
-        let TickReport { position, goal, .. } = self.state.report;
-        let place = OnGraph { graph: self.pack.graph(), position, goal };
+        let place = OnGraph::of(self.pack.graph(), &self.state.report);
         self.state.unevenness = match self.config.footing {
             true => next_unevenness(self.state.unevenness, place, state, dt),
             false => 0.0,

@@ -54,6 +54,16 @@ fn goes(path: usize, coordinate: f32, speed: f32) -> Controller {
     controller
 }
 
+/// A controller of a character that crawls at 0.3 m/s, with these variants.
+fn crawls(turning: Option<&str>, steady: Option<&str>) -> Controller {
+    let mut manifest = common::gaits(|_| ());
+    let crawl = &mut manifest.policies[policy("crawl")];
+    crawl.speed_mps = Some(0.3);
+    (crawl.turning, crawl.steady) = (turning.map(Into::into), steady.map(Into::into));
+    let pack = Arc::new(CharacterPack::from_parts(manifest, common::tensors(0.0)).unwrap());
+    Controller::with_config(pack, ControllerConfig { give_way: None, ..ControllerConfig::default() })
+}
+
 #[test]
 fn it_takes_all_in_the_tick_in_which_the_target_lies_far_aside_until_the_character_goes_there() {
     for (coordinate, speed) in [(1.0, 1.0), (2.0, 2.0), (0.5, 0.5)] {
@@ -87,7 +97,7 @@ fn slow_characters_small_angles_and_low_gaits_have_none() {
 }
 
 /// Where the policy sees its target, degrees to the left of the heading.
-fn seen(controller: &Controller) -> f32 {
+fn target_seen(controller: &Controller) -> f32 {
     let [x, y] = controller.report().target;
     y.atan2(x).to_degrees()
 }
@@ -96,7 +106,7 @@ fn seen(controller: &Controller) -> f32 {
 fn what_a_gait_is_trimmed_by_is_none_of_the_turning_variants_business() {
     let seen = |controller: &mut Controller, moves, way| {
         share(controller, moves, 0, 1.0, Some(way));
-        seen(controller)
+        target_seen(controller)
     };
     for way in [45.0, -45.0] {
         let [mut drifted, mut straight] = [goes(0, 1.0, 1.0), goes(0, 1.0, 1.0)];
@@ -110,12 +120,7 @@ fn what_a_gait_is_trimmed_by_is_none_of_the_turning_variants_business() {
 
 #[test]
 fn a_gait_slower_than_that_turns_on_the_spot_until_it_faces_its_target() {
-    let mut manifest = common::gaits(|_| ());
-    let crawl = &mut manifest.policies[policy("crawl")];
-    (crawl.speed_mps, crawl.turning) = (Some(0.3), Some(TURNS.into()));
-    let pack = Arc::new(CharacterPack::from_parts(manifest, common::tensors(0.0)).unwrap());
-    let config = ControllerConfig { give_way: None, ..ControllerConfig::default() };
-    let mut controller = Controller::with_config(pack, config);
+    let mut controller = crawls(Some(TURNS), None);
     let slow = Moves { speed: 0.05, ..AHEAD };
     let mut at = |moves, way| share(&mut controller, moves, 1, 3.0, Some(way));
     (0..120).for_each(|_| assert_eq!(at(slow, 35.0), 0.0, "a small angle"));
@@ -136,39 +141,29 @@ fn a_gait_slower_than_that_turns_on_the_spot_until_it_faces_its_target() {
 
 #[test]
 fn a_gait_that_turns_on_the_spot_gets_no_trim_and_while_it_turns_no_lead() {
-    let sees = |turns: bool| -> [f32; 2] {
-        let mut manifest = common::gaits(|_| ());
-        let crawl = &mut manifest.policies[policy("crawl")];
-        (crawl.speed_mps, crawl.turning) = (Some(0.3), turns.then(|| TURNS.into()));
-        let pack = Arc::new(CharacterPack::from_parts(manifest, common::tensors(0.0)).unwrap());
-        let config = ControllerConfig { give_way: None, turn_assist: None, ..ControllerConfig::default() };
-        let mut controller = Controller::with_config(pack, config);
+    let sees = |turning: Option<&str>| -> [f32; 2] {
+        let mut controller = crawls(turning, None);
         let mut at = |goes: f32, way: f32| {
             share(&mut controller, Moves { goes, speed: 0.3, ..AHEAD }, 1, 3.0, Some(way));
-            seen(&controller)
+            target_seen(&controller)
         };
         (0..120).for_each(|_| _ = at(0.0, 0.0));
         (0..60).for_each(|_| _ = at(10.0, 0.0));
         [at(10.0, 0.0), at(10.0, 60.0)]
     };
-    let [ahead, aside] = sees(true);
+    let [ahead, aside] = sees(Some(TURNS));
     assert!(
         (ahead + 5.0).abs() < 0.2 && (aside - 60.0).abs() < 0.1,
         "half the error, then none: {ahead}, {aside}"
     );
-    let [ahead, aside] = sees(false);
+    let [ahead, aside] = sees(None);
     assert!(ahead < -15.0 && aside > 62.0, "a gait that can't turn gets both: {ahead}, {aside}");
 }
 
 #[test]
 fn a_gait_that_turns_on_the_spot_comes_out_of_its_turn_by_its_steady_variant() {
     const STEADY: &str = "walk";
-    let mut manifest = common::gaits(|_| ());
-    let crawl = &mut manifest.policies[policy("crawl")];
-    (crawl.speed_mps, crawl.turning, crawl.steady) = (Some(0.3), Some(TURNS.into()), Some(STEADY.into()));
-    let pack = Arc::new(CharacterPack::from_parts(manifest, common::tensors(0.0)).unwrap());
-    let config = ControllerConfig { give_way: None, ..ControllerConfig::default() };
-    let mut controller = Controller::with_config(pack, config);
+    let mut controller = crawls(Some(TURNS), Some(STEADY));
     let mut shares = |ticks: usize, faces: f32, way: f32| -> Vec<[f32; 2]> {
         let moves = Moves { faces, goes: faces, speed: 0.3 };
         let mut acts = || {

@@ -12,7 +12,6 @@ use crate::fall::{Heights, step_heights};
 use crate::give_way::GiveWayState;
 use crate::ids::NodeId;
 use crate::path::GraphPosition;
-use crate::report::TickReport;
 use crate::rising::{Rise, committed, rising_variant};
 use crate::skill::SkillProgress;
 use crate::state::CharacterState;
@@ -140,15 +139,14 @@ impl Controller {
 
     /// How far the character is from what it is asked to do, after the way on the graph.
     pub(super) fn follow_urgency(&mut self, state: &CharacterState, target: Option<Vec2>, dt: f32) {
-        let TickReport { position, goal, skill, .. } = self.state.report;
-        let place = OnGraph { graph: self.pack.graph(), position, goal };
+        let place = OnGraph::of(self.pack.graph(), &self.state.report);
         let urgency = &mut self.state.urgency;
         *urgency = match self.config.agility {
             true => urgency.next(place, state, target, dt),
             false => Urgency::default(),
         };
         // Out of a skill nothing has learned to turn at once.
-        if skill.is_some() || self.state.settle_secs > 0.0 {
+        if self.state.report.skill.is_some() || self.state.settle_secs > 0.0 {
             urgency.turn = Turn::default();
         }
         // What held it up stops it, and is still there when it goes on: that is no stop, and no start.
@@ -164,8 +162,7 @@ impl Controller {
         let acts =
             self.config.capture_steps && report.skill.is_none() && !report.fallen && command.blend.is_none();
         let (graph, skeleton) = (self.pack.graph(), self.pack.skeleton());
-        let TickReport { position, goal, .. } = *report;
-        let place = OnGraph { graph, position, goal };
+        let place = OnGraph::of(graph, report);
         (self.state.capture_step, self.state.catch) = match acts {
             true => {
                 let at = comes_to_rest(skeleton, state);
@@ -173,7 +170,7 @@ impl Controller {
                 let (urgency, unevenness) = (&self.state.urgency, self.state.unevenness);
                 let catch = out_of_skill(self.state.catch, self.state.settle_secs, unevenness);
                 (
-                    self.state.capture_step.next((graph, position), (state, at), target, dt),
+                    self.state.capture_step.next((graph, report.position), (state, at), target, dt),
                     next_catch(catch, place, (skeleton, state), target, urgency, unevenness, dt),
                 )
             }
@@ -197,8 +194,7 @@ impl Controller {
             return target;
         };
         let turn = self.state.urgency.turn;
-        let TickReport { position, goal, .. } = self.state.report;
-        let place = OnGraph { graph: self.pack.graph(), position, goal };
+        let place = OnGraph::of(self.pack.graph(), &self.state.report);
         let (steering, trim_share) = match place.all_turn_on_the_spot() {
             true => (Steering { lead: if turn.turns { 0.0 } else { steering.lead }, ..steering }, 0.0),
             false => (steering, 1.0 - turn.share),
